@@ -1,0 +1,246 @@
+#include "coupling/solid_fractions.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/cube_fraction.h"
+
+namespace monolith {
+namespace {
+
+constexpr double kFar = 1e3;          // cell widths: no solid in sight
+constexpr double kLeastFluid = 1e-3;  // a face with less of it is closed: no tiny pivots
+constexpr int kMargin = 2;            // cells around a body in which its distance is wanted
+
+int wrapped(int index, int n) { return ((index % n) + n) % n; }
+
+// Cell of the grid that (i, j, k), perhaps in a periodic image, stands for; -1 outside the tank.
+std::ptrdiff_t gridIndex(const Lattice& l, std::array<int, 3> cell, int face_axis) {
+  for (int a = 0; a < 3; ++a) {
+    if (l.periodic[a]) {
+      cell[a] = wrapped(cell[a], l.n[a]);
+    } else if (cell[a] < 0 || cell[a] >= (a == face_axis ? l.faceEnd(a) : l.n[a])) {
+      return -1;
+    }
+  }
+  return l.index(cell[0], cell[1], cell[2]);
+}
+
+// Solid parts of the eight octants of a cube of width `width` about `center`, each from eight planes.
+void octantFractions(const SignedDistance& solid, const Eigen::Vector3d& center, const Eigen::Matrix3d& R_WB,
+                     double width, std::array<double, 8>& out) {
+  const auto corner = [&](int o, double by) -> Eigen::Vector3d {
+    return R_WB.transpose() * (by * Eigen::Vector3d((o & 1) ? 1 : -1, (o & 2) ? 1 : -1, (o & 4) ? 1 : -1));
+  };
+  for (int o = 0; o < 8; ++o) {
+    const Eigen::Vector3d octant = center + corner(o, 0.25 * width);
+    const double distance = solid.distance(octant);
+    if (std::abs(distance) > 0.4331 * width) {
+      out[o] = distance < 0.0 ? 1.0 : 0.0;
+      continue;
+    }
+    double sum = 0.0;
+    for (int q = 0; q < 8; ++q) {
+      const DistanceSample s = solid.sample(octant + corner(q, 0.125 * width));
+      sum += insideFraction(s.distance, R_WB * s.gradient, 0.25 * width);
+    }
+    out[o] = 0.125 * sum;
+  }
+}
+
+}  // namespace
+
+SolidSampler::SolidSampler(const MacGrid& grid) : grid_(grid) {
+  const Lattice& l = grid.lattice;
+  const auto distanceToWall = [&](const Eigen::Vector3d& x) {  // x in cell widths from the origin
+    double d = kFar;
+    for (int a = 0; a < 3; ++a) {
+      if (!l.periodic[a]) d = std::min({d, x[a], l.n[a] - x[a]});
+    }
+    return d;
+  };
+  for (int a = 0; a < 3; ++a) {
+    walls_.fluid[a].assign(l.size, 0.0);
+    walls_.distance[a].assign(l.size, -kFar);
+    walls_.owner[a].assign(l.size, SolidFractions::kWall);
+  }
+  walls_.cell_distance.assign(l.size, -kFar);
+  walls_.cell_fluid.assign(l.size, 0.0);
+  for (int k = -Lattice::kLowHalo; k < l.n[2] + Lattice::kHighHalo; ++k) {
+    for (int j = -Lattice::kLowHalo; j < l.n[1] + Lattice::kHighHalo; ++j) {
+      for (int i = -Lattice::kLowHalo; i < l.n[0] + Lattice::kHighHalo; ++i) {
+        const auto c = l.index(i, j, k);
+        const Eigen::Vector3d center(i + 0.5, j + 0.5, k + 0.5);
+        walls_.cell_distance[c] = distanceToWall(center);
+        walls_.cell_fluid[c] = walls_.cell_distance[c] > 0.0 ? 1.0 : 0.0;
+        for (int a = 0; a < 3; ++a) {
+          Eigen::Vector3d x = center;
+          x[a] -= 0.5;
+          walls_.distance[a][c] = distanceToWall(x);
+          walls_.fluid[a][c] = walls_.distance[a][c] > 0.0 ? 1.0 : 0.0;
+        }
+      }
+    }
+  }
+}
+
+void SolidSampler::sample(const std::vector<RigidBody>& bodies, SolidFractions& out) const {
+  out.fluid = walls_.fluid;
+  out.distance = walls_.distance;
+  out.owner = walls_.owner;
+  out.cell_distance = walls_.cell_distance;
+  out.cell_fluid = walls_.cell_fluid;
+  out.bodies.resize(bodies.size());
+  for (std::size_t b = 0; b < bodies.size(); ++b) sampleBody(bodies[b], static_cast<int>(b), out);
+  close(out);
+}
+
+void SolidSampler::sampleBody(const RigidBody& body, int index, SolidFractions& out) const {
+  const Lattice& l = grid_.lattice;
+  const double h = grid_.h;
+  const Eigen::Isometry3d X_WB = body.pose();
+  const Eigen::Isometry3d X_BW = X_WB.inverse();
+  const Eigen::Matrix3d R_WB = X_WB.linear();
+  const Eigen::AlignedBox3d box = body.distance->bounds().transformed(X_WB);
+
+  BodyFractions& f = out.bodies[index];
+  for (int a = 0; a < 3; ++a) {
+    const double low = (box.min()[a] - grid_.origin[a]) / h;
+    const double high = (box.max()[a] - grid_.origin[a]) / h;
+    int first = static_cast<int>(std::floor(std::clamp(low, -1e6, 1e6))) - kMargin;
+    int last = static_cast<int>(std::floor(std::clamp(high, -1e6, 1e6))) + kMargin;
+    if (!l.periodic[a]) {
+      first = std::clamp(first, -1, l.n[a]);
+      last = std::clamp(last, -1, l.n[a]);
+    }
+    f.low[a] = first;
+    f.count[a] = std::max(0, last - first + 1);
+  }
+  const std::size_t size = static_cast<std::size_t>(f.count[0]) * f.count[1] * f.count[2];
+  for (auto& field : f.face) field.assign(size, 0.0);
+  f.cell.assign(size, 0.0);
+  if (size == 0) return;
+
+  FaceField<float> distance;
+  for (auto& field : distance) field.assign(size, static_cast<float>(kFar));
+  std::vector<float> cell_distance(size);
+  std::vector<std::array<float, 6>> halves(size);  // solid part of the low and high half along each axis
+
+#pragma omp parallel for schedule(static)
+  for (int k = 0; k < f.count[2]; ++k) {
+    for (int j = 0; j < f.count[1]; ++j) {
+      for (int i = 0; i < f.count[0]; ++i) {
+        const std::size_t c = f.local(i, j, k);
+        const Eigen::Vector3d x_W = grid_.cellCenter(f.low[0] + i, f.low[1] + j, f.low[2] + k);
+        const Eigen::Vector3d x_B = X_BW * x_W;
+        const double d = body.distance->distance(x_B) / h;
+        cell_distance[c] = static_cast<float>(d);
+        // Beyond 1.5 cells no face of the cell is next to the surface: sign and rough size are enough.
+        if (std::abs(d) > 1.5) {
+          const bool inside = d < 0.0;
+          for (auto& field : distance) field[c] = static_cast<float>(d);
+          halves[c].fill(inside ? 1.0f : 0.0f);
+          f.cell[c] = inside ? 1.0 : 0.0;
+          continue;
+        }
+        for (int a = 0; a < 3; ++a) {
+          Eigen::Vector3d shift = Eigen::Vector3d::Zero();
+          shift[a] = -0.5 * h;
+          distance[a][c] = static_cast<float>(body.distance->distance(X_BW * (x_W + shift)) / h);
+        }
+        std::array<double, 8> octants;
+        octantFractions(*body.distance, x_B, R_WB, h, octants);
+        double cell = 0.0;
+        std::array<double, 6> half{};
+        for (int o = 0; o < 8; ++o) {
+          cell += 0.125 * octants[o];
+          for (int a = 0; a < 3; ++a) half[2 * a + ((o >> a) & 1)] += 0.25 * octants[o];
+        }
+        f.cell[c] = cell;
+        for (int s = 0; s < 6; ++s) halves[c][s] = static_cast<float>(half[s]);
+      }
+    }
+  }
+
+  for (int k = 0; k < f.count[2]; ++k) {
+    for (int j = 0; j < f.count[1]; ++j) {
+      for (int i = 0; i < f.count[0]; ++i) {
+        const std::size_t c = f.local(i, j, k);
+        const std::array<int, 3> cell = {f.low[0] + i, f.low[1] + j, f.low[2] + k};
+        const std::array<int, 3> at = {i, j, k};
+        for (int a = 0; a < 3; ++a) {
+          double low_part = 0.0;
+          if (at[a] > 0) {
+            std::array<int, 3> before = at;
+            --before[a];
+            low_part = halves[f.local(before[0], before[1], before[2])][2 * a + 1];
+          }
+          f.face[a][c] = 0.5 * (low_part + halves[c][2 * a]);
+          const auto g = gridIndex(l, cell, a);
+          if (g >= 0 && distance[a][c] < out.distance[a][g]) {
+            out.distance[a][g] = distance[a][c];
+            out.owner[a][g] = static_cast<std::int16_t>(index);
+          }
+        }
+        const auto g = gridIndex(l, cell, -1);
+        if (g >= 0) {
+          out.cell_distance[g] = std::min<double>(out.cell_distance[g], cell_distance[c]);
+          out.cell_fluid[g] = std::max(0.0, out.cell_fluid[g] - f.cell[c]);
+        }
+      }
+    }
+  }
+}
+
+// Makes the fractions of every face sum to one: walls first, then bodies, scaled down where they overlap and up
+// where what they leave is negligible.
+void SolidSampler::close(SolidFractions& out) const {
+  const Lattice& l = grid_.lattice;
+  FaceField<double> solid;
+  for (int a = 0; a < 3; ++a) {
+    solid[a].assign(l.size, 0.0);
+    for (const BodyFractions& f : out.bodies) {
+      for (int k = 0; k < f.count[2]; ++k) {
+        for (int j = 0; j < f.count[1]; ++j) {
+          for (int i = 0; i < f.count[0]; ++i) {
+            const auto g = gridIndex(l, {f.low[0] + i, f.low[1] + j, f.low[2] + k}, a);
+            if (g >= 0) solid[a][g] += f.face[a][f.local(i, j, k)];
+          }
+        }
+      }
+    }
+  }
+  for (BodyFractions& f : out.bodies) {
+    for (int a = 0; a < 3; ++a) {
+      for (int k = 0; k < f.count[2]; ++k) {
+        for (int j = 0; j < f.count[1]; ++j) {
+          for (int i = 0; i < f.count[0]; ++i) {
+            double& fraction = f.face[a][f.local(i, j, k)];
+            if (fraction == 0.0) continue;
+            const auto g = gridIndex(l, {f.low[0] + i, f.low[1] + j, f.low[2] + k}, a);
+            if (g < 0 || walls_.fluid[a][g] == 0.0) {
+              fraction = 0.0;
+            } else if (solid[a][g] > 1.0 - kLeastFluid) {
+              fraction /= solid[a][g];
+            }
+          }
+        }
+      }
+    }
+  }
+  for (int a = 0; a < 3; ++a) {
+#pragma omp parallel for schedule(static)
+    for (std::size_t g = 0; g < l.size; ++g) {
+      if (solid[a][g] > 0.0 && out.fluid[a][g] > 0.0) {
+        out.fluid[a][g] = solid[a][g] > 1.0 - kLeastFluid ? 0.0 : 1.0 - solid[a][g];
+      }
+    }
+    fillHalo(l, out.fluid[a]);
+    fillHalo(l, out.distance[a]);
+    fillHalo(l, out.owner[a]);
+  }
+  fillHalo(l, out.cell_distance);
+  fillHalo(l, out.cell_fluid);
+}
+
+}  // namespace monolith

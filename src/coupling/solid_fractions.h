@@ -1,0 +1,56 @@
+#pragma once
+// Where the solids are on the grid (DESIGN 1.1): for each face the part of its control volume, a cube of width h about
+// its centre, that each body, the wall and the liquid's side take; sum_i W_Si + W_wall + W_F = 1 exactly, also where
+// bodies touch or overlap. And the signed distance at face centres, which the fitted boundary (DESIGN 1.4) needs.
+//
+// Bodies are sampled by quarter cells, each cut by a plane, so W is exact for planes and of second order for curved
+// surfaces, and it changes smoothly when a body moves through the grid.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "fluid/mac_grid.h"
+#include "rigid/rigid_body.h"
+#include "solve/staggered_operator.h"
+
+namespace monolith {
+
+// Fractions of one body on the faces of a box of cells; outside the box they are zero.
+struct BodyFractions {
+  std::array<int, 3> low{};    // first cell of the box; may lie in a periodic image
+  std::array<int, 3> count{};  // cells along each axis
+  FaceField<double> face;      // W_Si per axis, box-local index
+  std::vector<double> cell;    // part of the cell
+
+  std::size_t local(int i, int j, int k) const {
+    return static_cast<std::size_t>(i) +
+           static_cast<std::size_t>(count[0]) * (static_cast<std::size_t>(j) + static_cast<std::size_t>(count[1]) * k);
+  }
+};
+
+struct SolidFractions {
+  static constexpr std::int16_t kWall = -1;
+
+  FaceField<double> fluid;                          // W_F on faces
+  FaceField<double> distance;                       // in cell widths, at face centres; <= 0 in solid
+  std::array<std::vector<std::int16_t>, 3> owner;   // whose distance that is: a body or kWall
+  std::vector<double> cell_distance;                // in cell widths, of bodies and walls at cell centres
+  std::vector<double> cell_fluid;                   // part of the cell that is not solid
+  std::vector<BodyFractions> bodies;
+};
+
+class SolidSampler {
+ public:
+  explicit SolidSampler(const MacGrid& grid);
+  void sample(const std::vector<RigidBody>& bodies, SolidFractions& out) const;
+
+ private:
+  void sampleBody(const RigidBody& body, int index, SolidFractions& out) const;
+  void close(SolidFractions& out) const;
+
+  MacGrid grid_;
+  SolidFractions walls_;  // the tank without bodies
+};
+
+}  // namespace monolith

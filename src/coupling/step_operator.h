@@ -1,0 +1,39 @@
+#pragma once
+// Matrix-free action of one step's operator on liquid and bodies, from coefficients and body rows.
+
+#include <vector>
+
+#include "coupling/stokes_coefficients.h"
+
+namespace monolith {
+
+// Unknowns, or forces on them, in the dimensionless units of stokes_coefficients.h. One twist for every body.
+struct StepVector {
+  FaceField<double> velocity;
+  std::vector<double> pressure;
+  std::vector<Vector6d> bodies;
+
+  void resize(const Lattice& lattice, std::size_t body_count);
+  void setZero();
+};
+
+class StepOperator {
+ public:
+  // Both must outlive the operator.
+  void set(const StaggeredCoefficients<double>* coefficients, const BodyRows* rows) {
+    coefficients_ = coefficients;
+    rows_ = rows;
+  }
+
+  // y = [A_uu U + A_uv v - C_u^T p,  A_vu U + (A_vv - M) v - C_v^T p,  -(C_u U + C_v v)]; without the bodies' inertia.
+  // Fills the halos of x on periodic axes.
+  void apply(StepVector& x, StepVector& y);
+
+
+ private:
+  const StaggeredCoefficients<double>* coefficients_ = nullptr;
+  const BodyRows* rows_ = nullptr;
+  StressSamples<double> stress_;
+};
+
+}  // namespace monolith

@@ -1,0 +1,74 @@
+#include "coupling/sticking_liquid.h"
+
+#include <algorithm>
+
+namespace monolith {
+namespace {
+
+// Place of a cell in a body's box, in whichever periodic image lies there; false outside.
+bool localCell(const Lattice& l, const BodyFractions& f, const int cell[3], int local[3]) {
+  for (int a = 0; a < 3; ++a) {
+    local[a] = cell[a] - f.low[a];
+    if (l.periodic[a]) local[a] = ((local[a] % l.n[a]) + l.n[a]) % l.n[a];
+    if (local[a] < 0 || local[a] >= f.count[a]) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+void attachStickingLiquid(const MacGrid& grid, SolidFractions& solids, std::vector<StickingLiquid>& out) {
+  const Lattice& l = grid.lattice;
+  out.clear();
+  if (solids.bodies.empty()) return;
+  for (int a = 0; a < 3; ++a) {
+    const auto& distance = solids.distance[a];
+    const auto& owner = solids.owner[a];
+    auto& fluid = solids.fluid[a];
+    for (int k = 0; k < l.faceEnd(2); ++k) {
+      for (int j = 0; j < l.faceEnd(1); ++j) {
+        for (int i = 0; i < l.faceEnd(0); ++i) {
+          const auto f = l.index(i, j, k);
+          if (!(fluid[f] > 0.0) || distance[f] >= 1.0) continue;
+          double kept = 0.0;
+          int body = owner[f];
+          if (distance[f] > 0.0) {
+            kept = 1.0;
+            double nearest = 1.0;
+            for (int b = 0; b < 3; ++b) {
+              double share = 0.0;
+              for (const auto step : {-l.stride[b], l.stride[b]}) {
+                const double beyond = distance[f + step];
+                double theta = 1.0;
+                if (beyond <= 0.0 && owner[f + step] >= 0) {
+                  theta = distance[f] / (distance[f] - beyond);
+                  if (theta < nearest) {
+                    nearest = theta;
+                    body = owner[f + step];
+                  }
+                }
+                share += 0.5 * theta;
+              }
+              kept = std::min(kept, share);
+            }
+          }
+          if (kept >= fluid[f]) continue;
+          const double stuck = fluid[f] - kept;
+          fluid[f] = kept;
+          if (body < 0) continue;
+          BodyFractions& fractions = solids.bodies[body];
+          const int cell[3] = {i, j, k};
+          int local[3];
+          if (!localCell(l, fractions, cell, local)) continue;
+          fractions.face[a][fractions.local(local[0], local[1], local[2])] += stuck;
+          out.push_back({a, f, body, stuck,
+                         grid.faceCenter(a, fractions.low[0] + local[0], fractions.low[1] + local[1],
+                                         fractions.low[2] + local[2])});
+        }
+      }
+    }
+    fillHalo(l, fluid);
+  }
+}
+
+}  // namespace monolith

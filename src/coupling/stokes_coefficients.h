@@ -1,0 +1,68 @@
+#pragma once
+// From geometry to the coefficients of one step (DESIGN 1.2 and 1.4). Everything is made dimensionless: momentum rows
+// are multiplied by dt/(rho h^3), pressure is p^ = dt p/(rho h), and viscosity enters as the viscous number
+// N = eta dt/(rho h^2).
+//
+// Glossary, paper -> code
+//   W_F^u   open            part of a face's control volume that is not solid
+//   W_L^u   (in mass)       part of it, between two cell centres, that is liquid: mass = W_F^u W_L^u
+//   W_L^p   has_pressure    cells whose centre lies in the liquid carry a pressure (ghost fluid: p = 0 at the surface)
+//   D       normal, shear   fitted gradient: differences across a solid's surface are taken over the liquid's
+//                           part theta of the segment, (u - u_solid(x_surface))/(theta h), energy weighted by theta
+//   W^s     (in normal, shear)  theta and the liquid part of the stress sample
+//   J_p     divergence rows differences of neighbouring W_Si: cancels inside a body
+//   J_s     stress rows     what a body's twist adds to a stress sample
+//
+// A face whose centre is solid but whose control volume is not wholly so ("sliver") has an unknown when the liquid slips:
+// inviscid, or so little viscous that a time step does not resolve the film (see sticking_liquid.h for the other
+// case). Viscosity then ties it to the solid it lies in (drag).
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "coupling/solid_fractions.h"
+#include "fluid/mac_grid.h"
+#include "rigid/rigid_body.h"
+#include "solve/staggered_operator.h"
+
+namespace monolith {
+
+// Twist -> component `axis` of the velocity of the body's point at x.
+Vector6d velocityRow(int axis, const Eigen::Vector3d& x, const Eigen::Vector3d& p_WBcm);
+
+// W_L of the segment between two cell centres from the liquid's distance there.
+double liquidPart(double distance_low, double distance_high);
+
+// What the twist of a body adds to one sample: coefficient . twist.
+struct BodyRow {
+  std::ptrdiff_t sample = 0;
+  int body = 0;
+  Vector6d coefficient = Vector6d::Zero();
+};
+
+struct BodyRows {
+  std::vector<BodyRow> divergence;         // per cell with pressure
+  std::array<std::vector<BodyRow>, 3> normal;  // per cell: adds to U_a[c + a] - U_a[c]
+  std::array<std::vector<BodyRow>, 3> shear;   // per edge: adds to t
+  std::array<std::vector<BodyRow>, 3> drag;    // per sliver face: velocity of the solid there
+};
+
+struct StokesGeometry {
+  const FaceField<double>* fluid = nullptr;           // W_F
+  const FaceField<double>* solid_distance = nullptr;  // cell widths
+  const std::vector<double>* liquid_distance = nullptr;  // cell widths, negative in liquid, at cell centres, halo filled
+};
+
+// Coefficients of one level; `viscous_number` is that of the level.
+void buildCoefficients(const Lattice& lattice, const StokesGeometry& geometry, double viscous_number,
+                       StaggeredCoefficients<double>& out);
+
+// Rows of the bodies on the finest level, for coefficients built from the same geometry.
+void buildBodyRows(const MacGrid& grid, const SolidFractions& solids, const std::vector<RigidBody>& bodies,
+                   const StokesGeometry& geometry, const StaggeredCoefficients<double>& coefficients, BodyRows& out);
+
+// The coarser levels, in the multigrid's precision: the same construction on averaged geometry.
+void buildCoarseLevels(const Lattice& lattice, const StokesGeometry& geometry, double viscous_number,
+                       std::vector<StaggeredCoefficients<float>>& levels);
+
+}  // namespace monolith

@@ -1,0 +1,29 @@
+#pragma once
+// Transport by the liquid's own velocity: semi-Lagrangian (Robert 1981), traced back by the midpoint rule, tricubic
+// at the foot. Stable at any CFL number.
+
+#include <cstdint>
+
+#include "fluid/mac_grid.h"
+#include "solve/staggered_operator.h"
+
+namespace monolith {
+
+// Spreads velocities from faces where known[a] is set to those within `layers` of them (mean of the known neighbours),
+// marking these known, and into the halo: odd across a wall for the normal component and, with no slip, for the
+// tangential ones; even otherwise.
+void extrapolateVelocity(const Lattice& lattice, int layers, bool no_slip,
+                         std::array<std::vector<std::uint8_t>, 3>& known, FaceField<double>& velocity);
+
+// The velocity field moved by itself over dt, on faces that are known; zero elsewhere. Halos must be filled.
+void advectVelocity(const MacGrid& grid, const FaceField<double>& velocity,
+                    const std::array<std::vector<std::uint8_t>, 3>& known, double dt, FaceField<double>& moved);
+
+// A cell-centred field moved by the velocity over dt. Halos must be filled.
+void advectCells(const MacGrid& grid, const FaceField<double>& velocity, const std::vector<double>& field, double dt,
+                 std::vector<double>& moved);
+
+// Velocity at a point, position in cell widths from the tank's corner.
+Eigen::Vector3d velocityAt(const Lattice& lattice, const FaceField<double>& velocity, const Eigen::Vector3d& position);
+
+}  // namespace monolith

@@ -1,0 +1,222 @@
+#include "fluid/free_surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fluid/advection.h"
+#include "fluid/interpolation.h"
+#include "geometry/cube_fraction.h"
+#include "solve/blocked_sum.h"
+
+namespace monolith {
+namespace {
+
+constexpr double kFar = 1e3;               // cell widths
+constexpr double kTravelToRedistance = 0.2;  // cells
+constexpr double kLargestShift = 0.1;      // cells in one correction
+constexpr double kSampleBeyondSolid = 0.75;  // cells: outside, where the value is the liquid's own
+
+// Solution of the discrete eikonal equation at a cell from its nearest neighbours along each axis.
+double eikonal(std::array<double, 3> d) {
+  std::sort(d.begin(), d.end());
+  double x = d[0] + 1.0;
+  if (x > d[1]) {
+    x = 0.5 * (d[0] + d[1] + std::sqrt(std::max(0.0, 2.0 - (d[0] - d[1]) * (d[0] - d[1]))));
+    if (x > d[2]) {
+      const double sum = d[0] + d[1] + d[2];
+      const double squares = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+      x = (sum + std::sqrt(std::max(0.0, sum * sum - 3.0 * (squares - 1.0)))) / 3.0;
+    }
+  }
+  return x;
+}
+
+}  // namespace
+
+FreeSurface::FreeSurface(const MacGrid& grid, double fill_height, const std::vector<Eigen::AlignedBox3d>& boxes)
+    : grid_(grid) {
+  const Lattice& l = grid.lattice;
+  distance_.assign(l.size, kFar);
+  const double top = grid.size()[2];
+  // Faces that lie on the tank's walls do not bound the liquid: what is beyond them never counts.
+  const auto boxDistance = [&](const Eigen::Vector3d& x, const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+    Eigen::Vector3d outside = Eigen::Vector3d::Zero();
+    double inside = -kFar;
+    for (int a = 0; a < 3; ++a) {
+      const double wall_low = grid.origin[a] + 1e-9 * grid.h;
+      const double wall_high = grid.origin[a] + grid.size()[a] - 1e-9 * grid.h;
+      double d = -kFar;
+      if (low[a] > wall_low) d = std::max(d, (low[a] - x[a]) / grid.h);
+      if (high[a] < wall_high) d = std::max(d, (x[a] - high[a]) / grid.h);
+      outside[a] = std::max(d, 0.0);
+      inside = std::max(inside, d);
+    }
+    return inside > 0.0 ? outside.norm() : inside;
+  };
+  full_ = true;
+  empty_ = true;
+  for (int k = 0; k < l.n[2]; ++k) {
+    for (int j = 0; j < l.n[1]; ++j) {
+      for (int i = 0; i < l.n[0]; ++i) {
+        const Eigen::Vector3d x = grid.cellCenter(i, j, k);
+        double d = kFar;
+        if (fill_height > 0.0) d = fill_height >= top * (1.0 - 1e-12) ? -kFar : (k + 0.5) - fill_height / grid.h;
+        for (const auto& box : boxes) d = std::min(d, boxDistance(x, box.min(), box.max()));
+        distance_[l.index(i, j, k)] = d;
+        full_ = full_ && d <= -0.5;
+        empty_ = empty_ && d >= 0.0;
+      }
+    }
+  }
+  // A tank filled to within half a cell of its lid still has a surface unless it is filled to the lid.
+  if (fill_height > 0.0 && fill_height < top * (1.0 - 1e-12) && boxes.empty()) full_ = false;
+  extendIntoHalo(l, distance_);
+}
+
+void FreeSurface::advect(const FaceField<double>& velocity, double dt, double maximum_speed) {
+  if (full_ || empty_ || maximum_speed == 0.0) return;
+  advectCells(grid_, velocity, distance_, dt, scratch_);
+  distance_.swap(scratch_);
+  extendIntoHalo(grid_.lattice, distance_);
+  travelled_ += maximum_speed * dt / grid_.h;
+  if (travelled_ > kTravelToRedistance) redistance();
+}
+
+void FreeSurface::redistance() {
+  travelled_ = 0.0;
+  const Lattice& l = grid_.lattice;
+  std::vector<double>& next = scratch_;
+  next.assign(l.size, kFar);
+  std::vector<std::uint8_t> fixed(l.size, 0);
+  // Next to the surface: the distance to the plane that the level set is there.
+#pragma omp parallel for schedule(static)
+  for (int k = 0; k < l.n[2]; ++k) {
+    for (int j = 0; j < l.n[1]; ++j) {
+      for (int i = 0; i < l.n[0]; ++i) {
+        const auto c = l.index(i, j, k);
+        const double d = distance_[c];
+        bool near = false;
+        double slope2 = 0.0;
+        for (int a = 0; a < 3; ++a) {
+          const double low = distance_[c - l.stride[a]];
+          const double high = distance_[c + l.stride[a]];
+          const bool cut_low = (d < 0.0) != (low < 0.0);
+          const bool cut_high = (d < 0.0) != (high < 0.0);
+          near = near || cut_low || cut_high;
+          // Across the surface where it is; central elsewhere.
+          double slope = 0.5 * (high - low);
+          if (cut_low && !cut_high) slope = d - low;
+          if (cut_high && !cut_low) slope = high - d;
+          slope2 += slope * slope;
+        }
+        if (!near) continue;
+        next[c] = std::abs(d) / std::max(std::sqrt(slope2), 0.1);
+        fixed[c] = 1;
+      }
+    }
+  }
+  for (int sweep = 0; sweep < 8; ++sweep) {
+    const bool fx = sweep & 1, fy = sweep & 2, fz = sweep & 4;
+    for (int kk = 0; kk < l.n[2]; ++kk) {
+      const int k = fz ? l.n[2] - 1 - kk : kk;
+      for (int jj = 0; jj < l.n[1]; ++jj) {
+        const int j = fy ? l.n[1] - 1 - jj : jj;
+        for (int ii = 0; ii < l.n[0]; ++ii) {
+          const int i = fx ? l.n[0] - 1 - ii : ii;
+          const auto c = l.index(i, j, k);
+          if (fixed[c]) continue;
+          std::array<double, 3> d;
+          for (int a = 0; a < 3; ++a) d[a] = std::min(next[c - l.stride[a]], next[c + l.stride[a]]);
+          next[c] = std::min(next[c], eikonal(d));
+        }
+      }
+    }
+    fillHalo(l, next);
+  }
+  for (std::size_t c = 0; c < l.size; ++c) next[c] = distance_[c] < 0.0 ? -next[c] : next[c];
+  distance_.swap(next);
+  extendIntoHalo(l, distance_);
+}
+
+void FreeSurface::extendIntoSolids(const std::vector<double>& solid_distance) {
+  if (full_ || empty_) return;
+  const Lattice& l = grid_.lattice;
+  scratch_ = distance_;
+  const Eigen::Vector3d offset = nodeOffset(-1);
+#pragma omp parallel for schedule(static)
+  for (int k = 0; k < l.n[2]; ++k) {
+    for (int j = 0; j < l.n[1]; ++j) {
+      for (int i = 0; i < l.n[0]; ++i) {
+        const auto c = l.index(i, j, k);
+        const double depth = solid_distance[c];
+        if (depth > 0.0) continue;
+        Eigen::Vector3d out;
+        for (int a = 0; a < 3; ++a) out[a] = solid_distance[c + l.stride[a]] - solid_distance[c - l.stride[a]];
+        const double length = out.norm();
+        if (!(length > 0.0)) continue;
+        const Eigen::Vector3d x = Eigen::Vector3d(i, j, k) + offset + out * ((kSampleBeyondSolid - depth) / length);
+        scratch_[c] = sampleLinear(l, distance_, x - offset);
+      }
+    }
+  }
+  distance_.swap(scratch_);
+  extendIntoHalo(l, distance_);
+}
+
+double FreeSurface::shiftedVolume(double shift, const std::vector<double>& cell_fluid) const {
+  const Lattice& l = grid_.lattice;
+  // One sum per slab, added in order: the same bits at any thread count.
+  std::vector<double> slabs(l.n[2], 0.0);
+#pragma omp parallel for schedule(static)
+  for (int k = 0; k < l.n[2]; ++k) {
+    for (int j = 0; j < l.n[1]; ++j) {
+      for (int i = 0; i < l.n[0]; ++i) {
+        const auto c = l.index(i, j, k);
+        const double d = distance_[c] + shift;
+        if (d > 1.0 || cell_fluid[c] == 0.0) continue;
+        double part = 1.0;
+        if (d > -1.0) {
+          Eigen::Vector3d slope;
+          for (int a = 0; a < 3; ++a) slope[a] = distance_[c + l.stride[a]] - distance_[c - l.stride[a]];
+          part = insideFraction(d, slope, 1.0);
+        }
+        slabs[k] += part * cell_fluid[c];
+      }
+    }
+  }
+  double sum = 0.0;
+  for (const double slab : slabs) sum += slab;
+  return sum * grid_.cellVolume();
+}
+
+double FreeSurface::volume(const std::vector<double>& cell_fluid) const {
+  if (empty_) return 0.0;
+  return shiftedVolume(0.0, cell_fluid);
+}
+
+double FreeSurface::correctVolume(double target, const std::vector<double>& cell_fluid) {
+  if (full_ || empty_) return 0.0;
+  const double before = volume(cell_fluid);
+  double shift = 0.0;
+  double v = before;
+  for (int it = 0; it < 8 && std::abs(v - target) > 1e-10 * target; ++it) {
+    constexpr double kStep = 1e-3;
+    const double slope = (shiftedVolume(shift + kStep, cell_fluid) - shiftedVolume(shift - kStep, cell_fluid)) / (2.0 * kStep);
+    if (!(slope < 0.0)) break;
+    shift = std::clamp(shift - (v - target) / slope, -kLargestShift, kLargestShift);
+    v = shiftedVolume(shift, cell_fluid);
+  }
+  if (shift == 0.0) return 0.0;
+  for (double& d : distance_) d += shift;
+  return v - before;
+}
+
+Eigen::Vector3d FreeSurface::normal(std::ptrdiff_t c) const {
+  const Lattice& l = grid_.lattice;
+  Eigen::Vector3d slope;
+  for (int a = 0; a < 3; ++a) slope[a] = distance_[c + l.stride[a]] - distance_[c - l.stride[a]];
+  const double length = slope.norm();
+  return length > 0.0 ? Eigen::Vector3d(slope / length) : Eigen::Vector3d::UnitZ();
+}
+
+}  // namespace monolith

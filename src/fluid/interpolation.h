@@ -1,0 +1,26 @@
+#pragma once
+// Sampling of staggered fields between their nodes. Positions in cell widths from the tank's corner.
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "solve/lattice.h"
+
+namespace monolith {
+
+// Where the node called (0, 0, 0) lies: cell centres at (1/2, 1/2, 1/2), faces of axis a half a cell lower along a.
+inline Eigen::Vector3d nodeOffset(int face_axis) {
+  Eigen::Vector3d offset(0.5, 0.5, 0.5);
+  if (face_axis >= 0) offset[face_axis] = 0.0;
+  return offset;
+}
+
+// Trilinear; positions are clamped to the tank along axes with walls, wrapped along periodic ones.
+double sampleLinear(const Lattice& lattice, const std::vector<double>& field, const Eigen::Vector3d& node_position);
+
+// Tricubic (Lagrange, fourth order), linear where the stencil would leave the field. `limited`: kept between the
+// eight surrounding values, so that no new extremum arises.
+double sampleCubic(const Lattice& lattice, const std::vector<double>& field, const Eigen::Vector3d& node_position,
+                   bool limited);
+
+}  // namespace monolith

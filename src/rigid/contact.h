@@ -1,0 +1,46 @@
+#pragma once
+// Contact detection: pairs of points where bodies touch or may touch within a step, each a row of the
+// normal contact Jacobian J_n. Broad and narrow phase by FCL; sign and manifold by the distance fields.
+
+#include <Eigen/Geometry>
+#include <string>
+#include <vector>
+
+#include "rigid/rigid_body.h"
+
+namespace monolith {
+
+// Row c of J_n: gap rate = (v_a(point) - v_b(point)) . normal. The normal points from b towards a.
+// body_b = kWall: the tank's wall, at rest.
+struct Contact {
+  static constexpr int kWall = -1;
+  int body_a = 0;
+  int body_b = kWall;
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();   // m, in W
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+  double gap = 0.0;                                  // m, negative when they penetrate
+};
+
+// The tank's inside, and which of its axes have no walls.
+struct TankWalls {
+  Eigen::AlignedBox3d inside;
+  bool periodic[3] = {false, false, false};
+};
+
+class ContactDetector {
+ public:
+  ContactDetector(const std::vector<RigidBody>& bodies, const TankWalls& walls);
+  ~ContactDetector();
+
+  // All contacts with gap <= margin (m), in a fixed order: pairs of bodies with body_a < body_b, then walls by body.
+  // A pair of bodies that are both fixed or prescribed gives none, nor does such a body with a wall. Points of a pair
+  // of bodies are half-way between the surfaces, with a wall on the body. Periodic images are not looked at.
+  // Throws std::invalid_argument if the number of bodies is not that of the constructor.
+  std::vector<Contact> detect(const std::vector<RigidBody>& bodies, double margin);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace monolith

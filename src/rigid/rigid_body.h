@@ -1,0 +1,48 @@
+#pragma once
+// State and mass properties of one rigid body at a moment. World frame W; the twist is that of the centre of
+// mass Bcm, in world axes: (linear m/s, angular rad/s), as in DESIGN's v in R^6.
+
+#include <Eigen/Geometry>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "geometry/shape.h"
+#include "scene/scene.h"
+
+namespace monolith {
+
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+struct RigidBody {
+  // constant
+  std::string name;
+  BodyMotion motion = BodyMotion::kFree;
+  PrescribedMotion prescribed;
+  double mass = 1.0;                                          // kg
+  Eigen::Vector3d p_BBcm = Eigen::Vector3d::Zero();           // m
+  Eigen::Matrix3d inertia_Bcm = Eigen::Matrix3d::Identity();  // kg m^2, axes of B
+  std::vector<Shape> shapes;
+  std::shared_ptr<const SignedDistance> distance;             // union of the shapes, frame B
+  // state
+  Eigen::Vector3d p_WBcm = Eigen::Vector3d::Zero();           // m
+  Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();
+  Vector6d twist = Vector6d::Zero();
+
+  Eigen::Isometry3d pose() const {                            // X_WB, of the body frame
+    Eigen::Isometry3d X_WB(q_WB);
+    X_WB.translation() = p_WBcm - q_WB * p_BBcm;
+    return X_WB;
+  }
+  Eigen::Matrix3d worldInertia() const {
+    const Eigen::Matrix3d R = q_WB.toRotationMatrix();
+    return R * inertia_Bcm * R.transpose();
+  }
+  // Velocity of the material point that is now at p_W.
+  Eigen::Vector3d velocityAt(const Eigen::Vector3d& p_W) const {
+    return twist.head<3>() + twist.tail<3>().cross(p_W - p_WBcm);
+  }
+};
+
+}  // namespace monolith

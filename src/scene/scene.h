@@ -1,0 +1,86 @@
+#pragma once
+// What is to be simulated, as plain data: made by scene/scene_file.h from YAML and URDF, validated there.
+// SI units. World frame W: z up, the tank's floor at z = tank.origin.z() (REP-103).
+
+#include <Eigen/Geometry>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "geometry/shape.h"
+
+namespace monolith {
+
+// A scene that cannot be simulated. what() names file, element, value and what was expected; if several
+// things are wrong it has a line for each.
+class SceneError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct TankDescription {
+  Eigen::Vector3d size = Eigen::Vector3d::Ones();     // m; a whole number of cells along each axis
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();   // m; the corner with the least coordinates, in W
+  double cell_width = 0.05;                           // m
+  bool periodic[3] = {false, false, false};           // walls along an axis are replaced by periodicity
+};
+
+struct LiquidDescription {
+  double density = 1000.0;                            // kg/m^3
+  double dynamic_viscosity = 0.0;                     // Pa.s; 0 is an inviscid liquid
+  double fill_level = 0.0;                            // m above the floor; 0: none, size.z(): full, closed
+  std::vector<Eigen::AlignedBox3d> boxes;             // further liquid at the start, in W
+};
+
+enum class BodyMotion { kFree, kFixed, kPrescribed };
+
+// Prescribed twist of a body's frame origin, world axes:
+// V(t) = twist + amplitude * 2 pi frequency * cos(2 pi frequency t + phase), per component.
+struct PrescribedMotion {
+  Eigen::Matrix<double, 6, 1> twist = Eigen::Matrix<double, 6, 1>::Zero();      // m/s (0..2), rad/s (3..5)
+  Eigen::Matrix<double, 6, 1> amplitude = Eigen::Matrix<double, 6, 1>::Zero();  // m (0..2), rad (3..5)
+  double frequency = 0.0;                                                       // Hz
+  double phase = 0.0;                                                           // rad
+};
+
+struct LinkFrame {
+  std::string name;
+  Eigen::Isometry3d X_BL = Eigen::Isometry3d::Identity();  // link frame in the body frame
+};
+
+// One rigid body: the links that fixed joints hold together. Body frame B = frame of the URDF's root link.
+struct BodyDescription {
+  std::string name;
+  std::string source;                                      // URDF file or parameter, for messages
+  std::string urdf_xml;                                    // the text itself, for visual markers
+  BodyMotion motion = BodyMotion::kFree;
+  PrescribedMotion prescribed;
+  double mass = 1.0;                                       // kg
+  Eigen::Vector3d p_BBcm = Eigen::Vector3d::Zero();        // m, centre of mass in B
+  Eigen::Matrix3d inertia_Bcm = Eigen::Matrix3d::Identity();  // kg m^2 about the centre of mass, axes of B
+  std::vector<Shape> shapes;                               // collision shapes, X_BG in B
+  std::vector<LinkFrame> links;                            // the root link first
+  Eigen::Isometry3d X_WB = Eigen::Isometry3d::Identity();  // initial pose
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();      // initial, of the origin of B, in W, m/s
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  // initial, in W, rad/s
+};
+
+struct SolverDescription {
+  double tolerance = 1e-6;        // relative residual of the coupled solve
+  int maximum_iterations = 200;   // of one coupled solve
+  int threads = 0;                // 0: as many as the machine has; never changes a result
+  double cfl = 1.0;               // cells that liquid or body may cross in one sub-step
+};
+
+struct Scene {
+  std::string name;
+  std::string source;                                      // the YAML file, for messages
+  TankDescription tank;
+  LiquidDescription liquid;
+  Eigen::Vector3d gravity = Eigen::Vector3d(0.0, 0.0, -9.81);  // m/s^2, in W
+  double time_step = 0.02;                                 // s, the output step; sub-steps are chosen inside
+  std::vector<BodyDescription> bodies;
+  SolverDescription solver;
+};
+
+}  // namespace monolith

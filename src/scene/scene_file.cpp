@@ -1,0 +1,75 @@
+#include "scene/scene_file.h"
+
+#include <filesystem>
+#include <map>
+
+#include "scene/resource_path.h"
+#include "scene/scene_sections.h"
+#include "scene/yaml_map.h"
+
+namespace monolith {
+namespace {
+
+namespace fs = std::filesystem;
+
+YAML::Node parseYaml(const std::string& yaml_file) {
+  std::error_code error;
+  if (!fs::is_regular_file(yaml_file, error)) {
+    throw SceneError(yaml_file + ": no such file: expected a scene file (YAML)");
+  }
+  const std::string text = readTextFile(yaml_file);
+  try {
+    return YAML::Load(text);
+  } catch (const YAML::Exception& exception) {
+    throw SceneError(yaml_file + ":" + std::to_string(exception.mark.line + 1) + ": malformed YAML at column " +
+                     std::to_string(exception.mark.column + 1) + ": " + exception.msg + ": expected valid YAML");
+  }
+}
+
+void readBodies(const YamlMap& map, const std::string& folder, const SceneResolver& resolver, bool tank_usable,
+                Scene& scene, Violations& violations) {
+  if (!map.has("bodies")) return;
+  const YAML::Node bodies = map.get("bodies");
+  if (!bodies.IsSequence()) return map.fail("bodies", "a list, each entry with name and urdf");
+  std::map<std::string, std::size_t> first_use;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const std::size_t violations_before = violations.count();
+    BodyDescription body = readBody(bodies[i], static_cast<int>(i), folder, resolver, violations);
+    const auto [first, is_new] = first_use.emplace(body.name, i);
+    if (!is_new && !body.name.empty()) {
+      violations.add(bodies[i], "bodies[" + std::to_string(i) + "].name: value " + body.name +
+                                    ": expected a name of its own, bodies[" + std::to_string(first->second) +
+                                    "] has it already");
+    }
+    // The pose may be a default that stands in for a wrong value.
+    if (tank_usable && violations.count() == violations_before) {
+      checkInsideTank(body, bodies[i], scene.tank, violations);
+    }
+    scene.bodies.push_back(std::move(body));
+  }
+}
+
+}  // namespace
+
+Scene loadScene(const std::string& yaml_file, const SceneResolver& resolver) {
+  const YAML::Node root = parseYaml(yaml_file);
+  Violations violations(yaml_file);
+  const YamlMap map(root, "", {"tank", "name", "liquid", "gravity", "time_step", "solver", "bodies"}, violations);
+  Scene scene;
+  scene.source = yaml_file;
+  scene.name = fs::path(yaml_file).stem().string();
+  map.read("name", scene.name);
+  map.read<3>("gravity", scene.gravity);
+  map.read("time_step", scene.time_step, Range::kPositive);
+  bool tank_usable = false;
+  if (root.IsMap()) map.require("tank", "a map with size and cell_width");
+  if (map.has("tank")) tank_usable = readTank(map.get("tank"), scene.tank, violations);
+  if (map.has("liquid")) readLiquid(map.get("liquid"), scene.tank, tank_usable, scene.liquid, violations);
+  if (map.has("solver")) readSolver(map.get("solver"), scene.solver, violations);
+  const std::string folder = fs::absolute(yaml_file).parent_path().string();
+  readBodies(map, folder, resolver, tank_usable, scene, violations);
+  violations.throwIfAny();
+  return scene;
+}
+
+}  // namespace monolith

@@ -1,0 +1,27 @@
+#pragma once
+// The parts of a scene file, each read from its own map. What is wrong is added to the violations.
+
+#include <string>
+
+#include "scene/scene_file.h"
+#include "scene/yaml_map.h"
+
+namespace monolith {
+
+// Returns whether the tank is usable, so that what depends on it can be checked.
+bool readTank(const YAML::Node& node, TankDescription& tank, Violations& violations);
+
+void readLiquid(const YAML::Node& node, const TankDescription& tank, bool tank_usable, LiquidDescription& liquid,
+                Violations& violations);
+
+void readSolver(const YAML::Node& node, SolverDescription& solver, Violations& violations);
+
+// Entry `index` of the list of bodies; `folder` is that of the scene file.
+BodyDescription readBody(const YAML::Node& node, int index, const std::string& folder,
+                         const SceneResolver& resolver, Violations& violations);
+
+// All shapes must lie inside the walls; along a periodic axis they must be shorter than the period.
+void checkInsideTank(const BodyDescription& body, const YAML::Node& node, const TankDescription& tank,
+                     Violations& violations);
+
+}  // namespace monolith

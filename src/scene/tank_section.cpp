@@ -1,0 +1,119 @@
+#include <unistd.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "scene/scene_sections.h"
+
+namespace monolith {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kCellTolerance = 1e-6;  // of a cell
+constexpr int kLeastCells = 4;           // along an axis
+constexpr double kBytesPerCell = 600.0;  // of all fields, multigrid levels and particles together
+
+char axisName(int axis) { return "xyz"[axis]; }
+
+// Sets the size to the whole number of cells it is within round-off of.
+bool fitCells(const YamlMap& map, TankDescription& tank) {
+  bool fits = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double cells = tank.size[axis] / tank.cell_width;
+    const double whole = std::round(cells);
+    std::ostringstream text;
+    if (!(std::abs(cells - whole) <= kCellTolerance)) {
+      text << "a whole number of cells of " << tank.cell_width << " m along " << axisName(axis) << ": "
+           << std::floor(cells) * tank.cell_width << " or " << std::ceil(cells) * tank.cell_width
+           << " m are the nearest sizes that fit";
+    } else if (whole < kLeastCells) {
+      text << "at least " << kLeastCells << " cells of " << tank.cell_width << " m along " << axisName(axis)
+           << ", not " << whole;
+    }
+    if (text.str().empty()) {
+      tank.size[axis] = whole * tank.cell_width;
+    } else {
+      map.fail("size", text.str());
+      fits = false;
+    }
+  }
+  return fits;
+}
+
+bool fitsMemory(const YamlMap& map, const TankDescription& tank) {
+  const double cells = (tank.size / tank.cell_width).array().round().prod();
+  const double gigabyte = 1e9;
+  const double needed = cells * kBytesPerCell / gigabyte;
+  const double present = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGE_SIZE) / gigabyte;
+  if (needed <= present) return true;
+  std::ostringstream text;
+  text << "a tank that fits in memory: " << cells << " cells need about " << needed << " GB, this machine has "
+       << present << " GB";
+  map.fail("cell_width", text.str());
+  return false;
+}
+
+}  // namespace
+
+bool readTank(const YAML::Node& node, TankDescription& tank, Violations& violations) {
+  const YamlMap map(node, "tank", {"size", "origin", "cell_width", "periodic"}, violations);
+  const std::size_t violations_before = violations.count();
+  map.require("size", "[x, y, z] in m");
+  map.require("cell_width", "a width in m");
+  map.read<3>("size", tank.size, Range::kPositive);
+  map.read("cell_width", tank.cell_width, Range::kPositive);
+  map.read("periodic", tank.periodic);
+  if (violations.count() > violations_before || !fitCells(map, tank) || !fitsMemory(map, tank)) return false;
+  tank.origin = Vector3d(-0.5 * tank.size.x(), -0.5 * tank.size.y(), 0.0);
+  map.read<3>("origin", tank.origin);
+  return violations.count() == violations_before;
+}
+
+void readLiquid(const YAML::Node& node, const TankDescription& tank, bool tank_usable, LiquidDescription& liquid,
+                Violations& violations) {
+  const YamlMap map(node, "liquid", {"density", "dynamic_viscosity", "fill_level", "boxes"}, violations);
+  map.read("density", liquid.density, Range::kPositive);
+  map.read("dynamic_viscosity", liquid.dynamic_viscosity, Range::kNotNegative);
+  map.read("fill_level", liquid.fill_level, Range::kNotNegative);
+  const double tolerance = kCellTolerance * tank.cell_width;
+  if (tank_usable && liquid.fill_level > tank.size.z() + tolerance) {
+    map.fail("fill_level", "at most the height of the tank, " + std::to_string(tank.size.z()) + " m");
+  }
+  if (!map.has("boxes")) return;
+  if (!map.get("boxes").IsSequence()) return map.fail("boxes", "a list of {min: [x, y, z], max: [x, y, z]}");
+  const Eigen::AlignedBox3d inside(tank.origin - Vector3d::Constant(tolerance),
+                                   tank.origin + tank.size + Vector3d::Constant(tolerance));
+  const YAML::Node boxes = map.get("boxes");
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const std::string path = "liquid.boxes[" + std::to_string(i) + "]";
+    const YamlMap box(boxes[i], path, {"min", "max"}, violations);
+    box.require("min", "[x, y, z] in m");
+    box.require("max", "[x, y, z] in m");
+    const std::size_t violations_before = violations.count();
+    Vector3d least = Vector3d::Zero(), most = Vector3d::Ones();
+    box.read<3>("min", least);
+    box.read<3>("max", most);
+    if (!box.has("min") || !box.has("max") || violations.count() > violations_before) continue;
+    if (!(least.array() < most.array()).all()) box.fail("max", "more than min along every axis");
+    if (tank_usable && !(inside.contains(least) && inside.contains(most))) {
+      std::ostringstream text;
+      const Eigen::IOFormat row(6, Eigen::DontAlignCols, ", ", ", ", "", "", "[", "]");
+      text << path << ": value " << shownValue(boxes[i]) << ": expected a box inside the tank, from "
+           << tank.origin.transpose().format(row) << " to " << (tank.origin + tank.size).transpose().format(row);
+      violations.add(boxes[i], text.str());
+    }
+    liquid.boxes.emplace_back(least, most);
+  }
+}
+
+void readSolver(const YAML::Node& node, SolverDescription& solver, Violations& violations) {
+  const YamlMap map(node, "solver", {"tolerance", "maximum_iterations", "threads", "cfl"}, violations);
+  map.read("tolerance", solver.tolerance, Range::kPositive);
+  if (solver.tolerance >= 1.0) map.fail("tolerance", "a relative residual below 1");
+  map.read("maximum_iterations", solver.maximum_iterations, 1);
+  map.read("threads", solver.threads, 0);
+  map.read("cfl", solver.cfl, Range::kPositive);
+}
+
+}  // namespace monolith

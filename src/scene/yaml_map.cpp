@@ -1,0 +1,184 @@
+#include "scene/yaml_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "scene/scene.h"
+
+namespace monolith {
+namespace {
+
+std::string expectedText(Range range) {
+  switch (range) {
+    case Range::kPositive: return "a finite number > 0";
+    case Range::kNotNegative: return "a finite number >= 0";
+    case Range::kFinite: break;
+  }
+  return "a finite number";
+}
+
+bool within(double value, Range range) {
+  if (!std::isfinite(value)) return false;
+  if (range == Range::kPositive) return value > 0.0;
+  return range == Range::kFinite || value >= 0.0;
+}
+
+bool toNumber(const YAML::Node& node, double& out) {
+  return node.IsScalar() && YAML::convert<double>::decode(node, out);
+}
+
+std::size_t editDistance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({substituted, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+// A word that is part of the other ("viscosity" of "dynamic_viscosity") was left short, not misspelt.
+std::size_t wordDistance(const std::string& word, const std::string& known) {
+  const bool is_part = word.size() > 2 && known.find(word) != std::string::npos;
+  return is_part ? std::min<std::size_t>(editDistance(word, known), 1) : editDistance(word, known);
+}
+
+}  // namespace
+
+void Violations::add(const YAML::Node& at, const std::string& text) {
+  const int line = at.IsDefined() ? at.Mark().line : -1;
+  lines_.push_back(file_ + (line >= 0 ? ":" + std::to_string(line + 1) : "") + ": " + text);
+}
+
+void Violations::throwIfAny() const {
+  if (lines_.empty()) return;
+  std::string text;
+  for (const std::string& line : lines_) text += (text.empty() ? "" : "\n") + line;
+  throw SceneError(text);
+}
+
+std::string nearestWord(const std::string& word, const std::vector<std::string>& known) {
+  return *std::min_element(known.begin(), known.end(), [&](const std::string& a, const std::string& b) {
+    return wordDistance(word, a) < wordDistance(word, b);
+  });
+}
+
+std::string shownValue(const YAML::Node& node) {
+  if (!node.IsDefined() || node.IsNull()) return "(nothing)";
+  if (node.IsScalar()) return node.Scalar();
+  std::string text;
+  if (node.IsSequence()) {
+    for (const YAML::Node& entry : node) text += (text.empty() ? "" : ", ") + shownValue(entry);
+    return "[" + text + "]";
+  }
+  for (const auto& entry : node) {
+    text += (text.empty() ? "" : ", ") + shownValue(entry.first) + ": " + shownValue(entry.second);
+  }
+  return "{" + text + "}";
+}
+
+YamlMap::YamlMap(const YAML::Node& node, const std::string& path, const std::vector<std::string>& known,
+                 Violations& violations)
+    : node_(node), path_(path), violations_(violations) {
+  if (!node.IsMap()) {
+    violations.add(node, (path.empty() ? "" : path + ": ") + "value " + shownValue(node) +
+                             ": expected a map with keys such as \"" + known.front() + "\"");
+    node_ = YAML::Node(YAML::NodeType::Map);
+    return;
+  }
+  std::set<std::string> seen;
+  for (const auto& entry : node) {
+    const std::string key = shownValue(entry.first);
+    if (std::find(known.begin(), known.end(), key) == known.end()) {
+      violations.add(entry.first, this->path(key) + ": unknown key: expected another, the nearest is \"" +
+                                      nearestWord(key, known) + "\"");
+    } else if (!seen.insert(key).second) {
+      violations.add(entry.first, this->path(key) + ": given twice: expected once");
+    }
+  }
+}
+
+bool YamlMap::has(const std::string& key) const { return get(key).IsDefined(); }
+
+YAML::Node YamlMap::get(const std::string& key) const {
+  const YAML::Node& constant = node_;  // operator[] of a mutable node would insert the key
+  return constant[key];
+}
+
+std::string YamlMap::path(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
+
+void YamlMap::require(const std::string& key, const std::string& expected) const {
+  if (!has(key)) violations_.add(node_, path(key) + ": missing: expected " + expected);
+}
+
+void YamlMap::fail(const std::string& key, const std::string& expected) const {
+  const YAML::Node value = get(key);
+  violations_.add(value.IsDefined() ? value : node_,
+                  path(key) + ": value " + shownValue(value) + ": expected " + expected);
+}
+
+void YamlMap::read(const std::string& key, double& out, Range range) const {
+  if (!has(key)) return;
+  double value;
+  if (!toNumber(get(key), value) || !within(value, range)) return fail(key, expectedText(range));
+  out = value;
+}
+
+void YamlMap::read(const std::string& key, int& out, int least) const {
+  if (!has(key)) return;
+  const YAML::Node node = get(key);
+  int value;
+  if (!node.IsScalar() || !YAML::convert<int>::decode(node, value) || value < least) {
+    return fail(key, "a whole number >= " + std::to_string(least));
+  }
+  out = value;
+}
+
+void YamlMap::read(const std::string& key, std::string& out) const {
+  if (!has(key)) return;
+  const YAML::Node node = get(key);
+  if (!node.IsScalar() || node.Scalar().empty()) return fail(key, "a text");
+  out = node.Scalar();
+}
+
+void YamlMap::read(const std::string& key, bool (&out)[3]) const {
+  if (!has(key)) return;
+  const YAML::Node node = get(key);
+  bool values[3];
+  bool good = node.IsSequence() && node.size() == 3;
+  for (int i = 0; good && i < 3; ++i) {
+    good = node[i].IsScalar() && YAML::convert<bool>::decode(node[i], values[i]);
+  }
+  if (!good) return fail(key, "a list of 3 times true or false");
+  std::copy(values, values + 3, out);
+}
+
+std::string YamlMap::readWord(const std::string& key, const std::string& otherwise,
+                              const std::vector<std::string>& words) const {
+  if (!has(key)) return otherwise;
+  const std::string word = shownValue(get(key));
+  if (std::find(words.begin(), words.end(), word) != words.end()) return word;
+  std::string all;
+  for (const std::string& known : words) all += (all.empty() ? "" : ", ") + known;
+  fail(key, "one of " + all + "; the nearest is \"" + nearestWord(word, words) + "\"");
+  return otherwise;
+}
+
+void YamlMap::readNumbers(const std::string& key, double* out, int count, Range range) const {
+  if (!has(key)) return;
+  const YAML::Node node = get(key);
+  std::vector<double> values(count);
+  bool good = node.IsSequence() && static_cast<int>(node.size()) == count;
+  for (int i = 0; good && i < count; ++i) good = toNumber(node[i], values[i]) && within(values[i], range);
+  if (!good) return fail(key, "a list of " + std::to_string(count) + ", each " + expectedText(range));
+  std::copy(values.begin(), values.end(), out);
+}
+
+}  // namespace monolith

@@ -1,0 +1,124 @@
+#include "simulation/liquid_state.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fluid/advection.h"
+
+namespace monolith {
+
+MacGrid makeGrid(const TankDescription& tank) {
+  MacGrid grid;
+  std::array<int, 3> n;
+  for (int a = 0; a < 3; ++a) n[a] = static_cast<int>(std::lround(tank.size[a] / tank.cell_width));
+  grid.lattice = Lattice(n, {tank.periodic[0], tank.periodic[1], tank.periodic[2]});
+  grid.h = tank.cell_width;
+  grid.origin = tank.origin;
+  return grid;
+}
+
+void completeVelocity(const MacGrid& grid, const StaggeredCoefficients<double>& coefficients,
+                      const SolidFractions& solids, const std::vector<RigidBody>& bodies, int layers, bool no_slip,
+                      FaceField<double>& velocity, std::array<std::vector<std::uint8_t>, 3>& known) {
+  const Lattice& l = grid.lattice;
+  for (int a = 0; a < 3; ++a) {
+    known[a].assign(l.size, 0);
+    forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
+      for (int i = 0; i < l.faceEnd(0); ++i) {
+        const auto f = row + i;
+        if (coefficients.mass[a][f] > 0.0) {
+          known[a][f] = 1;
+          continue;
+        }
+        velocity[a][f] = 0.0;
+        if (solids.distance[a][f] > 0.0) continue;
+        const int owner = solids.owner[a][f];
+        const bool wall_face = owner < 0;
+        if (wall_face) {
+          known[a][f] = 1;
+        } else if (no_slip) {
+          velocity[a][f] = bodies[owner].velocityAt(grid.faceCenter(a, i, j, k))[a];
+          known[a][f] = 1;
+        }
+      }
+    });
+  }
+  extrapolateVelocity(l, layers, no_slip, known, velocity);
+}
+
+std::vector<double> hydrostaticPressure(const MacGrid& grid, const FreeSurface& surface, double density,
+                                        const Eigen::Vector3d& gravity) {
+  const Lattice& l = grid.lattice;
+  std::vector<double> pressure(l.size, 0.0);
+  const auto& d = surface.distance();
+  // The highest point of the liquid along gravity, where the pressure is zero.
+  double least = 0.0;
+  bool found = false;
+  const auto visit = [&](auto&& f) {
+    for (int k = 0; k < l.n[2]; ++k) {
+      for (int j = 0; j < l.n[1]; ++j) {
+        for (int i = 0; i < l.n[0]; ++i) f(l.index(i, j, k), gravity.dot(grid.cellCenter(i, j, k)));
+      }
+    }
+  };
+  visit([&](std::ptrdiff_t c, double depth) {
+    if (d[c] >= 0.0 || d[c] < -1.0) return;
+    const double top = depth + d[c] * grid.h * gravity.norm();
+    least = found ? std::min(least, top) : top;
+    found = true;
+  });
+  visit([&](std::ptrdiff_t c, double depth) {
+    if (d[c] < 0.0) pressure[c] = density * (depth - least);
+  });
+  return pressure;
+}
+
+LiquidEnergy liquidEnergy(const MacGrid& grid, const StaggeredCoefficients<double>& coefficients,
+                          const FaceField<double>& velocity, const FreeSurface& surface,
+                          const std::vector<double>& cell_fluid, double density, const Eigen::Vector3d& gravity) {
+  const Lattice& l = grid.lattice;
+  LiquidEnergy energy;
+  for (int k = 0; k < l.faceEnd(2); ++k) {
+    for (int j = 0; j < l.faceEnd(1); ++j) {
+      for (int i = 0; i < l.faceEnd(0); ++i) {
+        const auto c = l.index(i, j, k);
+        for (int a = 0; a < 3; ++a) energy.kinetic += 0.5 * coefficients.mass[a][c] * velocity[a][c] * velocity[a][c];
+        if (i >= l.n[0] || j >= l.n[1] || k >= l.n[2]) continue;
+        const double part = std::clamp(0.5 - surface.distance()[c], 0.0, 1.0) * cell_fluid[c];
+        if (part > 0.0) energy.potential -= part * gravity.dot(grid.cellCenter(i, j, k));
+      }
+    }
+  }
+  energy.kinetic *= density * grid.cellVolume();
+  energy.potential *= density * grid.cellVolume();
+  return energy;
+}
+
+std::vector<SurfacePoint> sampleSurface(const MacGrid& grid, const FreeSurface& surface,
+                                        const std::vector<double>& cell_distance, const FaceField<double>& velocity) {
+  std::vector<SurfacePoint> points;
+  if (surface.full() || surface.empty()) return points;
+  const Lattice& l = grid.lattice;
+  const auto& d = surface.distance();
+  for (int k = 0; k < l.n[2]; ++k) {
+    for (int j = 0; j < l.n[1]; ++j) {
+      for (int i = 0; i < l.n[0]; ++i) {
+        const auto c = l.index(i, j, k);
+        if (std::abs(d[c]) > 1.0 || cell_distance[c] < -0.5) continue;
+        const Eigen::Vector3d normal = surface.normal(c);
+        // The foot on the surface, if it lies in this cell's share: one point for a cell that the surface crosses.
+        const Eigen::Vector3d shift = -d[c] * normal;
+        if (shift.cwiseAbs().maxCoeff() > 0.5 + 1e-9) continue;
+        const Eigen::Vector3d cells = Eigen::Vector3d(i + 0.5, j + 0.5, k + 0.5) + shift;
+        SurfacePoint point;
+        point.position = (grid.origin + grid.h * cells).cast<float>();
+        point.normal = normal.cast<float>();
+        point.velocity = velocityAt(l, velocity, cells).cast<float>();
+        points.push_back(point);
+      }
+    }
+  }
+  return points;
+}
+
+}  // namespace monolith

@@ -1,0 +1,36 @@
+#pragma once
+// The liquid's part of the state, and what is read off it.
+
+#include <vector>
+
+#include "coupling/coupled_system.h"
+#include "fluid/free_surface.h"
+#include "scene/scene.h"
+#include "simulation/simulation.h"
+
+namespace monolith {
+
+MacGrid makeGrid(const TankDescription& tank);
+
+// Marks the faces whose velocity is known, gives faces inside bodies the bodies' velocity where it sticks to them, and
+// spreads the rest into solids and air.
+void completeVelocity(const MacGrid& grid, const StaggeredCoefficients<double>& coefficients,
+                      const SolidFractions& solids, const std::vector<RigidBody>& bodies, int layers, bool no_slip,
+                      FaceField<double>& velocity, std::array<std::vector<std::uint8_t>, 3>& known);
+
+// Pressure of the liquid at rest: where it is exact the first solve has nothing to do.
+std::vector<double> hydrostaticPressure(const MacGrid& grid, const FreeSurface& surface, double density,
+                                        const Eigen::Vector3d& gravity);
+
+struct LiquidEnergy {
+  double kinetic = 0.0;    // J
+  double potential = 0.0;  // J, zero at the world's origin
+};
+LiquidEnergy liquidEnergy(const MacGrid& grid, const StaggeredCoefficients<double>& coefficients,
+                          const FaceField<double>& velocity, const FreeSurface& surface,
+                          const std::vector<double>& cell_fluid, double density, const Eigen::Vector3d& gravity);
+
+std::vector<SurfacePoint> sampleSurface(const MacGrid& grid, const FreeSurface& surface,
+                                        const std::vector<double>& cell_distance, const FaceField<double>& velocity);
+
+}  // namespace monolith

@@ -1,0 +1,69 @@
+#pragma once
+// The co-simulation: liquid and rigid bodies advanced together, one coupled solve a sub-step. No ROS in here.
+//
+//   Simulation simulation(loadScene("drop.yaml"));
+//   StepReport report = simulation.step();
+//
+// A step whose solve fails is not committed: the state stays as it was before, and the report says why.
+
+#include <Eigen/Geometry>
+#include <memory>
+#include <vector>
+
+#include "rigid/integration.h"
+#include "rigid/rigid_body.h"
+#include "scene/scene.h"
+#include "simulation/statistics.h"
+
+namespace monolith {
+
+// State of a body as its users see it: the body frame B (the URDF's root link), not the centre of mass.
+struct BodyState {
+  Eigen::Isometry3d X_WB = Eigen::Isometry3d::Identity();
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();          // m/s, of the origin of B, in W
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  // rad/s, in W
+  Wrench liquid;   // on the body, at the centre of mass, mean over the last step
+  Wrench contact;  // likewise
+};
+
+struct SurfacePoint {
+  Eigen::Vector3f position;  // m, in W
+  Eigen::Vector3f normal;    // unit, out of the liquid
+  Eigen::Vector3f velocity;  // m/s
+};
+
+class Simulation {
+ public:
+  // Throws SceneError: a body outside the tank, bodies that overlap.
+  explicit Simulation(const Scene& scene);
+  ~Simulation();
+
+  const Scene& scene() const;
+  double time() const;
+
+  // Advances by scene().time_step, in as many sub-steps as the CFL number asks for.
+  [[nodiscard]] StepReport step();
+  // Report of the last step; status kNotRun before the first.
+  const StepReport& report() const;
+
+  // Indexed as scene().bodies.
+  std::vector<BodyState> bodyStates() const;
+  const std::vector<RigidBody>& bodies() const;
+  // Acts on body i during the steps to come, until replaced. Throws std::invalid_argument unless finite.
+  void setWrench(int body, const Wrench& wrench);
+  // Throws std::invalid_argument unless finite and inside the tank.
+  void setBodyState(int body, const Eigen::Isometry3d& X_WB, const Eigen::Vector3d& velocity,
+                    const Eigen::Vector3d& angular_velocity);
+
+  // Points of the free surface, about one for each cell that it crosses; empty without a free surface.
+  std::vector<SurfacePoint> surfacePoints() const;
+
+  // Back to the scene's initial state, time 0, no wrenches.
+  void reset();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace monolith

@@ -1,0 +1,52 @@
+#pragma once
+// What a step tells about itself. Every step returns one; `~statistics` publishes it.
+
+#include <string>
+#include <vector>
+
+namespace monolith {
+
+enum class SolveStatus { kNotRun, kConverged, kNotConverged, kInconsistent };
+
+const char* toString(SolveStatus status);
+
+struct StageTimes {        // s of wall time, summed over the sub-steps
+  double advection = 0.0;
+  double contact = 0.0;
+  double geometry = 0.0;   // fractions, coefficients, multigrid levels
+  double solve = 0.0;
+  double surface = 0.0;
+  double total = 0.0;
+};
+
+struct ModelChoice {       // what the last sub-step modelled, chosen from the state
+  bool liquid = false;
+  bool viscosity = false;
+  bool free_surface = false;
+  int coupled_bodies = 0;  // bodies with at least one coupling row
+  int contacts = 0;
+};
+
+struct StepReport {
+  SolveStatus status = SolveStatus::kNotRun;
+  std::string message;             // empty if all went well
+  long step = 0;                   // output steps since the start
+  double time = 0.0;               // s, simulated, after the step
+  int substeps = 0;
+  int iterations = 0;              // Krylov, summed over the sub-steps
+  int liquid_solves = 0;           // coupled linear solves, summed over the sub-steps
+  double residual = 0.0;           // relative, worst of the sub-steps
+  double divergence = 0.0;         // 1/s, largest in a liquid cell
+  double maximum_speed = 0.0;      // m/s, in the liquid
+  double liquid_volume = 0.0;      // m^3
+  double volume_correction = 0.0;  // m^3, signed, that the surface was corrected by in this step
+  double kinetic_energy = 0.0;     // J, liquid and bodies
+  double potential_energy = 0.0;   // J, liquid and bodies, zero at the world's origin
+  double penetration = 0.0;        // m, deepest
+  ModelChoice model;
+  StageTimes times;
+
+  bool committed() const { return status == SolveStatus::kConverged; }
+};
+
+}  // namespace monolith

@@ -1,0 +1,36 @@
+#pragma once
+// Sums over long arrays that give the same bits at any thread count: blocks of fixed length, each summed by one
+// thread, block sums added in order.
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace monolith {
+
+constexpr std::ptrdiff_t kSumBlock = 4096;
+
+// f(begin, end) -> Sum, for consecutive ranges of [0, size).
+template <class Sum, class BlockFunction>
+Sum blockedSum(std::ptrdiff_t size, BlockFunction&& f) {
+  const std::ptrdiff_t blocks = (size + kSumBlock - 1) / kSumBlock;
+  std::vector<Sum> sums(blocks);
+#pragma omp parallel for schedule(static)
+  for (std::ptrdiff_t b = 0; b < blocks; ++b) {
+    sums[b] = f(b * kSumBlock, std::min(size, (b + 1) * kSumBlock));
+  }
+  Sum total{};
+  for (const Sum& sum : sums) total += sum;
+  return total;
+}
+
+inline double dot(const std::vector<double>& x, const std::vector<double>& y) {
+  return blockedSum<double>(static_cast<std::ptrdiff_t>(x.size()), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    double sum = 0.0;
+#pragma omp simd reduction(+ : sum)
+    for (std::ptrdiff_t i = begin; i < end; ++i) sum += x[i] * y[i];
+    return sum;
+  });
+}
+
+}  // namespace monolith

@@ -1,0 +1,117 @@
+#pragma once
+// Index space that all fields of a staggered grid share: n[0] x n[1] x n[2] cells, x fastest, with one layer of
+// halo below and two above each axis, so that a stencil never branches. The face, edge or cell called (i, j, k)
+// is the one at the low side (faces), low corner (edges) or inside (cells) of cell (i, j, k).
+//
+// Along an axis with walls faces run from 0 to n inclusive; along a periodic one from 0 to n - 1.
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace monolith {
+
+struct Lattice {
+  static constexpr int kLowHalo = 1;
+  static constexpr int kHighHalo = 2;
+
+  std::array<int, 3> n{};
+  std::array<bool, 3> periodic{};
+  std::array<std::ptrdiff_t, 3> stride{};
+  std::size_t size = 0;
+
+  Lattice() = default;
+  Lattice(const std::array<int, 3>& cells, const std::array<bool, 3>& periodic_axes)
+      : n(cells), periodic(periodic_axes) {
+    const std::ptrdiff_t halo = kLowHalo + kHighHalo;
+    stride = {1, n[0] + halo, (n[0] + halo) * (n[1] + halo)};
+    size = static_cast<std::size_t>(stride[2]) * static_cast<std::size_t>(n[2] + halo);
+  }
+
+  std::ptrdiff_t index(int i, int j, int k) const {
+    return (i + kLowHalo) + stride[1] * (j + kLowHalo) + stride[2] * (k + kLowHalo);
+  }
+  // One past the last face along an axis.
+  int faceEnd(int axis) const { return periodic[axis] ? n[axis] : n[axis] + 1; }
+  bool anyPeriodic() const { return periodic[0] || periodic[1] || periodic[2]; }
+  long cells() const { return static_cast<long>(n[0]) * n[1] * n[2]; }
+};
+
+// Calls f(row_start, j, k) for every x-row of faces (the range that covers all cells, faces and edges); f sees
+// rows of faceEnd(0) entries. Rows are shared among threads by k, so f may write its own row only.
+template <class RowFunction>
+void forEachRow(const Lattice& lattice, RowFunction&& f) {
+  const int end_j = lattice.faceEnd(1);
+  const int end_k = lattice.faceEnd(2);
+#pragma omp parallel for schedule(static)
+  for (int k = 0; k < end_k; ++k) {
+    for (int j = 0; j < end_j; ++j) {
+      f(lattice.index(0, j, k), j, k);
+    }
+  }
+}
+
+// Copies the periodic images into the halo; nothing along axes with walls.
+template <class Value>
+void fillHalo(const Lattice& lattice, std::vector<Value>& field) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!lattice.periodic[axis]) continue;
+    const int b = (axis + 1) % 3;
+    const int c = (axis + 2) % 3;
+    const auto base = lattice.index(0, 0, 0);
+    const auto shift = lattice.stride[axis] * lattice.n[axis];
+    for (int q = -Lattice::kLowHalo; q < lattice.n[c] + Lattice::kHighHalo; ++q) {
+      for (int p = -Lattice::kLowHalo; p < lattice.n[b] + Lattice::kHighHalo; ++p) {
+        const auto row = base + p * lattice.stride[b] + q * lattice.stride[c];
+        for (int g = 1; g <= Lattice::kLowHalo; ++g) {
+          field[row - g * lattice.stride[axis]] = field[row - g * lattice.stride[axis] + shift];
+        }
+        for (int g = 0; g < Lattice::kHighHalo; ++g) {
+          field[row + shift + g * lattice.stride[axis]] = field[row + g * lattice.stride[axis]];
+        }
+      }
+    }
+  }
+}
+
+// Fills the halo of a cell field: beyond walls with the nearest value inside, along periodic axes with the images.
+template <class Value>
+void extendIntoHalo(const Lattice& lattice, std::vector<Value>& cells) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (lattice.periodic[axis]) continue;
+    const int b = (axis + 1) % 3;
+    const int c = (axis + 2) % 3;
+    const auto s = lattice.stride[axis];
+    const int n = lattice.n[axis];
+    for (int q = -Lattice::kLowHalo; q < lattice.n[c] + Lattice::kHighHalo; ++q) {
+      for (int p = -Lattice::kLowHalo; p < lattice.n[b] + Lattice::kHighHalo; ++p) {
+        Value* row = cells.data() + lattice.index(0, 0, 0) + p * lattice.stride[b] + q * lattice.stride[c];
+        for (int g = 1; g <= Lattice::kLowHalo; ++g) row[-g * s] = row[0];
+        for (int g = 0; g < Lattice::kHighHalo; ++g) row[(n + g) * s] = row[(n - 1) * s];
+      }
+    }
+  }
+  fillHalo(lattice, cells);
+}
+
+// Zeroes the periodic images, so that sums over the whole array count each unknown once.
+template <class Value>
+void clearHalo(const Lattice& lattice, std::vector<Value>& field) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!lattice.periodic[axis]) continue;
+    const int b = (axis + 1) % 3;
+    const int c = (axis + 2) % 3;
+    const auto base = lattice.index(0, 0, 0);
+    for (int q = -Lattice::kLowHalo; q < lattice.n[c] + Lattice::kHighHalo; ++q) {
+      for (int p = -Lattice::kLowHalo; p < lattice.n[b] + Lattice::kHighHalo; ++p) {
+        const auto row = base + p * lattice.stride[b] + q * lattice.stride[c];
+        for (int g = 1; g <= Lattice::kLowHalo; ++g) field[row - g * lattice.stride[axis]] = Value(0);
+        for (int g = 0; g < Lattice::kHighHalo; ++g) {
+          field[row + (lattice.n[axis] + g) * lattice.stride[axis]] = Value(0);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace monolith

@@ -1,0 +1,241 @@
+#include "solve/staggered_operator.h"
+
+#include <algorithm>
+
+namespace monolith {
+
+template <class Real>
+void computeStress(const StaggeredCoefficients<Real>& c, const FaceField<Real>& U, StressSamples<Real>& stress) {
+  const Lattice& l = c.lattice;
+  const int width = l.faceEnd(0);
+  stress.resize(l);
+  forEachRow(l, [&](std::ptrdiff_t row, int, int) {
+    for (int a = 0; a < 3; ++a) {
+      const Real* u = U[a].data() + row;
+      const Real* k = c.normal[a].data() + row;
+      Real* s = stress.normal[a].data() + row;
+      const auto step = l.stride[a];
+#pragma omp simd
+      for (int i = 0; i < width; ++i) s[i] = k[i] * (u[i + step] - u[i]);
+    }
+    for (int p = 0; p < 3; ++p) {
+      const auto [a, b] = kShearPairs[p];
+      const Real* u = U[a].data() + row;
+      const Real* v = U[b].data() + row;
+      const Real* ku = c.shear[p][0].data() + row;
+      const Real* kv = c.shear[p][1].data() + row;
+      Real* t = stress.shear[p].data() + row;
+      const auto sa = l.stride[a];
+      const auto sb = l.stride[b];
+#pragma omp simd
+      for (int i = 0; i < width; ++i) t[i] = ku[i] * (u[i] - u[i - sb]) + kv[i] * (v[i] - v[i - sa]);
+    }
+  });
+  for (int a = 0; a < 3; ++a) {
+    fillHalo(l, stress.normal[a]);
+    fillHalo(l, stress.shear[a]);
+  }
+}
+
+template <class Real>
+void applyMomentum(const StaggeredCoefficients<Real>& c, const FaceField<Real>& U, const StressSamples<Real>& stress,
+                   FaceField<Real>& AU) {
+  const Lattice& l = c.lattice;
+  const int width = l.faceEnd(0);
+  forEachRow(l, [&](std::ptrdiff_t row, int, int) {
+    for (int a = 0; a < 3; ++a) {
+      const Real* u = U[a].data() + row;
+      const Real* m = c.mass[a].data() + row;
+      Real* out = AU[a].data() + row;
+      if (!c.viscous) {
+#pragma omp simd
+        for (int i = 0; i < width; ++i) out[i] = m[i] * u[i];
+        continue;
+      }
+      const Real* d = c.drag[a].data() + row;
+      const Real* s = stress.normal[a].data() + row;
+      const auto sa = l.stride[a];
+      // The two shear pairs that component a takes part in; `first` tells in which place.
+      const int p = a == 2 ? 1 : 0;
+      const int q = a == 0 ? 1 : 2;
+      const bool p_first = kShearPairs[p][0] == a;
+      const bool q_first = kShearPairs[q][0] == a;
+      const auto sp = l.stride[p_first ? kShearPairs[p][1] : kShearPairs[p][0]];
+      const auto sq = l.stride[q_first ? kShearPairs[q][1] : kShearPairs[q][0]];
+      const Real* tp = stress.shear[p].data() + row;
+      const Real* tq = stress.shear[q].data() + row;
+      const Real* kp = c.shear[p][p_first ? 0 : 1].data() + row;
+      const Real* kq = c.shear[q][q_first ? 0 : 1].data() + row;
+#pragma omp simd
+      for (int i = 0; i < width; ++i) {
+        const Real force = s[i - sa] - s[i] + kp[i] * tp[i] - kp[i + sp] * tp[i + sp] + kq[i] * tq[i] -
+                           kq[i + sq] * tq[i + sq];
+        out[i] = m[i] > Real(0) ? (m[i] + d[i]) * u[i] + force : Real(0);
+      }
+    }
+  });
+}
+
+template <class Real>
+void computeDivergence(const StaggeredCoefficients<Real>& c, const FaceField<Real>& U,
+                       std::vector<Real>& divergence) {
+  const Lattice& l = c.lattice;
+  const int width = l.faceEnd(0);
+  forEachRow(l, [&](std::ptrdiff_t row, int, int) {
+    const Real *u = U[0].data() + row, *v = U[1].data() + row, *w = U[2].data() + row;
+    const Real *ou = c.open[0].data() + row, *ov = c.open[1].data() + row, *ow = c.open[2].data() + row;
+    const std::uint8_t* has = c.has_pressure.data() + row;
+    Real* out = divergence.data() + row;
+    const auto sy = l.stride[1];
+    const auto sz = l.stride[2];
+#pragma omp simd
+    for (int i = 0; i < width; ++i) {
+      const Real sum = ou[i + 1] * u[i + 1] - ou[i] * u[i] + ov[i + sy] * v[i + sy] - ov[i] * v[i] +
+                       ow[i + sz] * w[i + sz] - ow[i] * w[i];
+      out[i] = has[i] ? sum : Real(0);
+    }
+  });
+}
+
+template <class Real>
+void addPressureForce(const StaggeredCoefficients<Real>& c, const std::vector<Real>& p, Real factor,
+                      FaceField<Real>& U) {
+  const Lattice& l = c.lattice;
+  const int width = l.faceEnd(0);
+  forEachRow(l, [&](std::ptrdiff_t row, int, int) {
+    const Real* q = p.data() + row;
+    for (int a = 0; a < 3; ++a) {
+      const Real* o = c.open[a].data() + row;
+      Real* u = U[a].data() + row;
+      const auto sa = l.stride[a];
+#pragma omp simd
+      for (int i = 0; i < width; ++i) u[i] += factor * o[i] * (q[i - sa] - q[i]);
+    }
+  });
+}
+
+template <class Real>
+void addPressureImpulse(const StaggeredCoefficients<Real>& c, const FaceField<Real>& mass, const std::vector<Real>& p,
+                        FaceField<Real>& U) {
+  const Lattice& l = c.lattice;
+  const int width = l.faceEnd(0);
+  forEachRow(l, [&](std::ptrdiff_t row, int, int) {
+    const Real* q = p.data() + row;
+    for (int a = 0; a < 3; ++a) {
+      const Real* m = mass[a].data() + row;
+      const Real* o = c.open[a].data() + row;
+      Real* u = U[a].data() + row;
+      const auto sa = l.stride[a];
+#pragma omp simd
+      for (int i = 0; i < width; ++i) u[i] += m[i] > Real(0) ? o[i] * (q[i - sa] - q[i]) / m[i] : Real(0);
+    }
+  });
+}
+
+template <class Real>
+void smoothingDiagonal(const StaggeredCoefficients<Real>& c, FaceField<Real>& diagonal) {
+  const Lattice& l = c.lattice;
+  const int width = l.faceEnd(0);
+  for (auto& field : diagonal) field.resize(l.size);
+  forEachRow(l, [&](std::ptrdiff_t row, int, int) {
+    for (int a = 0; a < 3; ++a) {
+      const auto sa = l.stride[a];
+      const auto& has = c.mass[a];
+      for (auto f = row; f < row + width; ++f) {
+        Real sum = has[f];
+        if (sum > Real(0) && c.viscous) {
+          Real others = Real(0);
+          sum += c.drag[a][f] + c.normal[a][f] + c.normal[a][f - sa];
+          if (has[f + sa] > Real(0)) others += c.normal[a][f];
+          if (has[f - sa] > Real(0)) others += c.normal[a][f - sa];
+          for (int p = 0; p < 3; ++p) {
+            for (int place = 0; place < 2; ++place) {
+              if (kShearPairs[p][place] != a) continue;
+              const int b = kShearPairs[p][1 - place];
+              const auto sb = l.stride[b];
+              const auto& k = c.shear[p][place];
+              const auto& k_other = c.shear[p][1 - place];
+              sum += k[f] * k[f] + k[f + sb] * k[f + sb];
+              if (has[f - sb] > Real(0)) others += k[f] * k[f];
+              if (has[f + sb] > Real(0)) others += k[f + sb] * k[f + sb];
+              for (const auto edge : {f, f + sb}) {
+                const Real cross = k[edge] * k_other[edge];
+                if (c.mass[b][edge] > Real(0)) others += cross;
+                if (c.mass[b][edge - sa] > Real(0)) others += cross;
+              }
+            }
+          }
+          sum = std::max(sum, (sum + others) / Real(kLargestScaled));
+        }
+        diagonal[a][f] = sum;
+      }
+    }
+  });
+}
+
+template <class Real>
+void effectiveMass(const StaggeredCoefficients<Real>& c, FaceField<Real>& mass) {
+  const Lattice& l = c.lattice;
+  const int width = l.faceEnd(0);
+  for (auto& field : mass) field.resize(l.size);
+  for (int a = 0; a < 3; ++a) {
+    const auto& has = c.mass[a];
+    forEachRow(l, [&](std::ptrdiff_t row, int, int) {
+      for (auto f = row; f < row + width; ++f) {
+        Real sum = has[f];
+        if (sum > Real(0) && c.viscous) {
+          const auto sa = l.stride[a];
+          sum += c.drag[a][f];
+          if (!(has[f + sa] > Real(0))) sum += c.normal[a][f];
+          if (!(has[f - sa] > Real(0))) sum += c.normal[a][f - sa];
+          for (int p = 0; p < 3; ++p) {
+            for (int place = 0; place < 2; ++place) {
+              if (kShearPairs[p][place] != a) continue;
+              const auto& k = c.shear[p][place];
+              const auto sb = l.stride[kShearPairs[p][1 - place]];
+              if (!(has[f - sb] > Real(0))) sum += k[f] * k[f];
+              if (!(has[f + sb] > Real(0))) sum += k[f + sb] * k[f + sb];
+            }
+          }
+        }
+        mass[a][f] = sum;
+      }
+    });
+    fillHalo(l, mass[a]);
+  }
+}
+
+template <class To, class From>
+StaggeredCoefficients<To> convertCoefficients(const StaggeredCoefficients<From>& c) {
+  StaggeredCoefficients<To> out;
+  const auto copy = [](const auto& from, auto& to) {
+    for (std::size_t a = 0; a < from.size(); ++a) to[a].assign(from[a].begin(), from[a].end());
+  };
+  out.lattice = c.lattice;
+  out.viscous = c.viscous;
+  copy(c.mass, out.mass);
+  copy(c.open, out.open);
+  copy(c.drag, out.drag);
+  copy(c.normal, out.normal);
+  for (int p = 0; p < 3; ++p) copy(c.shear[p], out.shear[p]);
+  out.has_pressure = c.has_pressure;
+  return out;
+}
+
+#define MONOLITH_INSTANTIATE(Real)                                                                                  \
+  template void computeStress(const StaggeredCoefficients<Real>&, const FaceField<Real>&, StressSamples<Real>&);     \
+  template void applyMomentum(const StaggeredCoefficients<Real>&, const FaceField<Real>&, const StressSamples<Real>&, \
+                              FaceField<Real>&);                                                                     \
+  template void computeDivergence(const StaggeredCoefficients<Real>&, const FaceField<Real>&, std::vector<Real>&);   \
+  template void addPressureForce(const StaggeredCoefficients<Real>&, const std::vector<Real>&, Real,                 \
+                                 FaceField<Real>&);                                                                  \
+  template void addPressureImpulse(const StaggeredCoefficients<Real>&, const FaceField<Real>&,                        \
+                                   const std::vector<Real>&, FaceField<Real>&);                                       \
+  template void effectiveMass(const StaggeredCoefficients<Real>&, FaceField<Real>&);                                  \
+  template void smoothingDiagonal(const StaggeredCoefficients<Real>&, FaceField<Real>&);
+MONOLITH_INSTANTIATE(double)
+MONOLITH_INSTANTIATE(float)
+#undef MONOLITH_INSTANTIATE
+template StaggeredCoefficients<float> convertCoefficients(const StaggeredCoefficients<double>&);
+
+}  // namespace monolith

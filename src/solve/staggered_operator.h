@@ -1,0 +1,105 @@
+#pragma once
+// Matrix-free operators of one Stokes step on a staggered grid, from per-sample coefficients. Numerics only: what the
+// coefficients mean physically is decided in coupling/.
+//
+// Velocities U_a (a = 0, 1, 2) live on faces, zero wherever mass[a] is zero. With s_a[c] = U_a at the face called c:
+//   normal sample of cell c, axis a:   s = normal[a][c] (U_a[c + a] - U_a[c])
+//   shear sample of edge c, pair (a,b): t = shear[ab].first (U_a[c] - U_a[c - b]) + shear[ab].second (U_b[c] - U_b[c - a])
+//   viscous block   A U = mass U + drag U + D^T (s, t)        symmetric, positive definite where mass > 0
+//   divergence      (C U)[c] = sum_a open[a][c + a] U_a[c + a] - open[a][c] U_a[c], on cells with pressure
+//   pressure block  L = C mass^-1 C^T                          symmetric, positive semi-definite
+// All of it dimensionless: velocities in m/s, every coefficient a ratio (coupling/stokes_coefficients.h).
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "solve/lattice.h"
+
+namespace monolith {
+
+// The three pairs of axes of the shear samples: edge arrays are indexed by pair.
+constexpr int kShearPairs[3][2] = {{0, 1}, {0, 2}, {1, 2}};
+
+template <class Real>
+using FaceField = std::array<std::vector<Real>, 3>;
+
+template <class Real>
+struct StaggeredCoefficients {
+  Lattice lattice;
+  bool viscous = false;
+  FaceField<Real> mass;                    // liquid part of the face's control volume; 0: no unknown
+  FaceField<Real> open;                    // part of it that is not solid; 0 where mass is 0
+  FaceField<Real> drag;                    // tie of a face to the solid it lies in
+  FaceField<Real> normal;                  // per cell and axis
+  std::array<std::array<std::vector<Real>, 2>, 3> shear;  // per pair: factor of the first, of the second component
+  std::vector<std::uint8_t> has_pressure;  // per cell
+
+  void resize(const Lattice& l, bool with_viscosity) {
+    lattice = l;
+    viscous = with_viscosity;
+    for (int a = 0; a < 3; ++a) {
+      mass[a].assign(l.size, Real(0));
+      open[a].assign(l.size, Real(0));
+      const std::size_t viscous_size = viscous ? l.size : 0;
+      drag[a].assign(viscous_size, Real(0));
+      normal[a].assign(viscous_size, Real(0));
+      for (int s = 0; s < 2; ++s) shear[a][s].assign(viscous_size, Real(0));
+    }
+    has_pressure.assign(l.size, 0);
+  }
+};
+
+// Viscous stress samples of a velocity field: normal[a] per cell, shear[pair] per edge (t above, unscaled).
+template <class Real>
+struct StressSamples {
+  FaceField<Real> normal;
+  FaceField<Real> shear;
+
+  void resize(const Lattice& l) {
+    for (int a = 0; a < 3; ++a) {
+      normal[a].resize(l.size);
+      shear[a].resize(l.size);
+    }
+  }
+};
+
+// Samples of U; U's halo must be filled.
+template <class Real>
+void computeStress(const StaggeredCoefficients<Real>& c, const FaceField<Real>& U, StressSamples<Real>& stress);
+
+// AU = (mass + drag) U + D^T stress. The halo of the stress must be filled. Rows without an unknown give zero.
+template <class Real>
+void applyMomentum(const StaggeredCoefficients<Real>& c, const FaceField<Real>& U, const StressSamples<Real>& stress,
+                   FaceField<Real>& AU);
+
+// divergence = C U on cells with pressure, zero elsewhere.
+template <class Real>
+void computeDivergence(const StaggeredCoefficients<Real>& c, const FaceField<Real>& U, std::vector<Real>& divergence);
+
+// U_a += factor * (C^T p)_a on faces with an unknown; p's halo must be filled.
+template <class Real>
+void addPressureForce(const StaggeredCoefficients<Real>& c, const std::vector<Real>& p, Real factor, FaceField<Real>& U);
+
+// U_a += (C^T p)_a / mass_a on faces with mass; p's halo must be filled.
+template <class Real>
+void addPressureImpulse(const StaggeredCoefficients<Real>& c, const FaceField<Real>& mass, const std::vector<Real>& p,
+                        FaceField<Real>& U);
+
+// Diagonal D of the viscous block, raised where needed so that the spectrum of D^-1 A lies in [0, kLargestScaled] for
+// sure (Gershgorin): a smoother must not diverge at a face that strong ties surround. Zero where there is no unknown.
+constexpr double kLargestScaled = 2.6;
+template <class Real>
+void smoothingDiagonal(const StaggeredCoefficients<Real>& c, FaceField<Real>& diagonal);
+
+// Mass plus what ties a face to solids: the viscous block applied to a constant, one component at a time. This is the
+// inertia against which the pressure moves the face when viscosity holds its neighbours, so the preconditioner's
+// projection divides by it. Zero where there is no unknown.
+template <class Real>
+void effectiveMass(const StaggeredCoefficients<Real>& c, FaceField<Real>& mass);
+
+// The same coefficients in another precision.
+template <class To, class From>
+StaggeredCoefficients<To> convertCoefficients(const StaggeredCoefficients<From>& c);
+
+}  // namespace monolith

@@ -1,0 +1,179 @@
+// Every scene and URDF that ships: it loads, its masses are those of the stated density, nothing overlaps.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <random>
+
+#include "geometry/shape.h"
+#include "scene/resource_path.h"
+#include "scene/scene_file.h"
+#include "scene/urdf_body.h"
+
+namespace monolith {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+const fs::path kSource = MONOLITH_SOURCE_DIR;
+
+Scene scene(const std::string& name) {
+  return loadScene((kSource / "config/scenes" / (name + ".yaml")).string(), SceneResolver());
+}
+
+// Inertia about the centre of mass of a solid of unit density. A mesh is summed over the tetrahedra between its
+// triangles and the origin.
+Matrix3d unitInertia(const Shape& shape) {
+  const double v = volume(shape);
+  const auto fromMoments = [](const Vector3d& m) { return Matrix3d((Vector3d::Constant(m.sum()) - m).asDiagonal()); };
+  switch (shape.kind) {
+    case Shape::Kind::kBox: return fromMoments(v / 12.0 * shape.box_size.cwiseProduct(shape.box_size));
+    case Shape::Kind::kSphere: return fromMoments(Vector3d::Constant(v / 5.0 * shape.radius * shape.radius));
+    case Shape::Kind::kCylinder: {
+      const double across = v / 4.0 * shape.radius * shape.radius;
+      return fromMoments(Vector3d(across, across, v / 12.0 * shape.length * shape.length));
+    }
+    case Shape::Kind::kMesh: break;
+  }
+  Matrix3d second = Matrix3d::Zero();
+  Vector3d first = Vector3d::Zero();
+  for (const Eigen::Vector3i& t : shape.mesh->triangles) {
+    Matrix3d corners;
+    for (int i = 0; i < 3; ++i) corners.col(i) = shape.mesh->vertices[t[i]];
+    const double six_volume = corners.determinant();
+    const Vector3d sum = corners.rowwise().sum();
+    first += six_volume / 24.0 * sum;
+    second += six_volume / 120.0 * (corners * corners.transpose() + sum * sum.transpose());
+  }
+  second -= first * first.transpose() / v;
+  return second.trace() * Matrix3d::Identity() - second;
+}
+
+TEST(ShippedUrdfs, MassAndInertiaAreThoseOfTheDensity) {
+  const std::map<std::string, double> densities = {
+      {"steel_sphere", 7800},  {"aluminium_box", 2700},  {"torus", 1500},
+      {"light_ball", 100},     {"wood_cylinder", 900},   {"tencate_sphere", 1120},
+      {"stack_bottom", 1500},  {"stack_middle", 2500},   {"stack_top", 8000}};
+  std::size_t found = 0;
+  for (const auto& entry : fs::directory_iterator(kSource / "urdf")) {
+    if (entry.path().extension() != ".urdf") continue;
+    const auto density = densities.find(entry.path().stem().string());
+    ASSERT_NE(density, densities.end()) << entry.path() << " has no density in this test";
+    BodyDescription body;
+    const std::string xml = readTextFile(entry.path().string());
+    const auto errors =
+        readUrdfBody({entry.path().string(), (kSource / "urdf").string(), xml}, SceneResolver(), body);
+    ASSERT_TRUE(errors.empty()) << errors.front();
+    ASSERT_EQ(body.shapes.size(), 1u);
+    EXPECT_NEAR(body.mass, density->second * volume(body.shapes[0]), 1e-6 * body.mass) << entry.path();
+    const Matrix3d inertia = density->second * unitInertia(body.shapes[0]);
+    EXPECT_LT((body.inertia_Bcm - inertia).norm(), 1e-5 * inertia.norm()) << entry.path();
+    EXPECT_LT(body.p_BBcm.norm(), 1e-12);
+    EXPECT_NE(xml.find("<visual>"), std::string::npos);
+    EXPECT_NE(xml.find("<color"), std::string::npos);
+    EXPECT_NE(xml.find(std::to_string(static_cast<int>(density->second)) + " kg/m^3"), std::string::npos);
+    ++found;
+  }
+  EXPECT_EQ(found, densities.size());
+}
+
+TEST(ShippedScenes, AllLoadWithoutOverlap) {
+  int found = 0;
+  for (const auto& entry : fs::directory_iterator(kSource / "config/scenes")) {
+    const Scene scene = loadScene(entry.path().string(), SceneResolver());
+    EXPECT_EQ(scene.name, entry.path().stem().string());
+    std::vector<std::shared_ptr<const SignedDistance>> fields;
+    for (const BodyDescription& body : scene.bodies) fields.push_back(makeSignedDistance(body.shapes, 0.005));
+    std::mt19937 engine(6);
+    for (int i = 0; i < 200000; ++i) {
+      Vector3d p_W = scene.tank.origin;
+      for (int axis = 0; axis < 3; ++axis) p_W[axis] += scene.tank.size[axis] * (engine() / 4294967296.0);
+      int inside = 0;
+      for (std::size_t b = 0; b < fields.size(); ++b) {
+        inside += fields[b]->distance(scene.bodies[b].X_WB.inverse() * p_W) < 0.0;
+      }
+      ASSERT_LE(inside, 1) << entry.path() << " at " << p_W.transpose();
+    }
+    ++found;
+  }
+  EXPECT_GE(found, 3);
+}
+
+TEST(ShippedScenes, DropFallsIntoAHalfFilledTank) {
+  const Scene drop = scene("drop");
+  EXPECT_EQ(drop.tank.size, Vector3d::Constant(32 * 0.01));
+  EXPECT_DOUBLE_EQ(drop.liquid.fill_level, 0.5 * drop.tank.size.z());
+  std::map<Shape::Kind, int> kinds;
+  for (const BodyDescription& body : drop.bodies) {
+    for (const Shape& shape : body.shapes) {
+      ++kinds[shape.kind];
+      EXPECT_GT(bounds(shape, body.X_WB).min().z(), drop.liquid.fill_level) << body.name;
+    }
+  }
+  EXPECT_GE(kinds[Shape::Kind::kSphere], 2);
+  EXPECT_GE(kinds[Shape::Kind::kBox], 1);
+  EXPECT_GE(kinds[Shape::Kind::kMesh], 1);
+}
+
+TEST(ShippedScenes, SettlingSphereIsCaseE1) {
+  const Scene e1 = scene("settling_sphere");
+  EXPECT_LT((e1.tank.size - Vector3d(0.1, 0.1, 0.16)).norm(), 1e-12);
+  EXPECT_DOUBLE_EQ(e1.liquid.fill_level, 0.16);
+  EXPECT_EQ(e1.liquid.density, 970.0);
+  EXPECT_EQ(e1.liquid.dynamic_viscosity, 0.373);
+  ASSERT_EQ(e1.bodies.size(), 1u);
+  const BodyDescription& sphere = e1.bodies[0];
+  EXPECT_NEAR(2.0 * sphere.shapes[0].radius / e1.tank.cell_width, 6.0, 1e-12);
+  EXPECT_NEAR(bounds(sphere.shapes[0], sphere.X_WB).min().z(), 0.12, 1e-12);
+  EXPECT_NEAR(sphere.mass, 1120.0 * M_PI / 6.0 * std::pow(0.015, 3), 1e-9);
+}
+
+TEST(ShippedScenes, StackIsUnderLiquidWithTheHeaviestOnTop) {
+  const Scene stack = scene("stack");
+  ASSERT_EQ(stack.bodies.size(), 3u);
+  double below = stack.tank.origin.z();
+  double lighter = 0.0;
+  for (const BodyDescription& body : stack.bodies) {
+    const Eigen::AlignedBox3d box = bounds(body.shapes[0], body.X_WB);
+    EXPECT_NEAR(box.min().z(), below + 5e-5, 6e-5);
+    EXPECT_GT(body.mass, lighter);
+    below = box.max().z();
+    lighter = body.mass;
+  }
+  EXPECT_LT(below, stack.liquid.fill_level);
+}
+
+TEST(SceneTemplate, LoadsAndNamesEveryKey) {
+  const std::string file = (kSource / "config/scene_template.yaml").string();
+  const Scene scene = loadScene(file, SceneResolver());
+  EXPECT_EQ(scene.bodies.size(), 2u);
+  const std::string text = readTextFile(file);
+  for (const char* key :
+       {"size:", "origin:", "cell_width:", "periodic:", "density:", "dynamic_viscosity:", "fill_level:", "boxes:",
+        "min:", "max:", "gravity:", "time_step:", "tolerance:", "maximum_iterations:", "threads:", "cfl:", "name:",
+        "urdf:", "urdf_parameter:", "position:", "rpy:", "quaternion:", "velocity:", "angular_velocity:", "motion:",
+        "twist:", "amplitude:", "frequency:", "phase:"}) {
+    EXPECT_NE(text.find(key), std::string::npos) << key;
+  }
+}
+
+// The comments promise defaults: a scene without the keys has them.
+TEST(SceneTemplate, DefaultsItStatesAreThoseOfTheCode) {
+  const Scene defaults;
+  EXPECT_EQ(defaults.liquid.density, 1000.0);
+  EXPECT_EQ(defaults.liquid.dynamic_viscosity, 0.0);
+  EXPECT_EQ(defaults.liquid.fill_level, 0.0);
+  EXPECT_EQ(defaults.gravity, Vector3d(0.0, 0.0, -9.81));
+  EXPECT_EQ(defaults.time_step, 0.02);
+  EXPECT_EQ(defaults.solver.tolerance, 1e-6);
+  EXPECT_EQ(defaults.solver.maximum_iterations, 200);
+  EXPECT_EQ(defaults.solver.threads, 0);
+  EXPECT_EQ(defaults.solver.cfl, 1.0);
+}
+
+}  // namespace
+}  // namespace monolith
