@@ -253,8 +253,8 @@ void CoupledSystem::assemble(SolidFractions& solids, const std::vector<RigidBody
 }
 
 CoupledReport CoupledSystem::solve(const FaceField<double>& free_velocity, const std::vector<Vector6d>& free_twists,
-                                   const std::vector<Contact>& contacts, const CoupledOptions& options,
-                                   CoupledState& state) {
+                                   const std::vector<Contact>& contacts, const Eigen::Vector3d& gravity,
+                                   const CoupledOptions& options, CoupledState& state) {
   Impl& m = *impl_;
   const Lattice& l = m.grid.lattice;
   const std::size_t liquid = m.liquidSize();
@@ -288,11 +288,16 @@ CoupledReport CoupledSystem::solve(const FaceField<double>& free_velocity, const
     clearHalo(l, mass);
     for (std::size_t i = 0; i < l.size; ++i) rhs[a * l.size + i] += mass[i] * free_velocity[a][i];
   }
+  // The sticking liquid has moved with its body: its momentum is not that of the face, which is slower.
+  const auto stickingVelocity = [&](const StickingLiquid& s, const Vector6d& row) {
+    return row.dot((*m.bodies)[s.body].twist) + m.dt * gravity[s.axis];
+  };
   // Momentum of the bodies by themselves, and that of the liquid which sticks to them.
   std::vector<Vector6d> momentum(body_count, Vector6d::Zero());
   for (std::size_t i = 0; i < m.free.size(); ++i) momentum[m.free[i]] = m.solid_inertia[i] * free_twists[m.free[i]];
   for (const StickingLiquid& s : m.sticking) {
-    momentum[s.body] += s.fraction * free_velocity[s.axis][s.face] * velocityRow(s.axis, s.position, (*m.bodies)[s.body].p_WBcm);
+    const Vector6d row = velocityRow(s.axis, s.position, (*m.bodies)[s.body].p_WBcm);
+    momentum[s.body] += s.fraction * stickingVelocity(s, row) * row;
   }
   for (std::size_t i = 0; i < m.free.size(); ++i) {
     Eigen::Map<Vector6d> part(rhs.data() + liquid + 6 * i);
@@ -499,7 +504,7 @@ CoupledReport CoupledSystem::solve(const FaceField<double>& free_velocity, const
   const double force_scale = m.impulse_scale / m.dt;
   for (const StickingLiquid& s : m.sticking) {
     const Vector6d row = velocityRow(s.axis, s.position, (*m.bodies)[s.body].p_WBcm);
-    m.out.bodies[s.body] += s.fraction * (row.dot(m.in.bodies[s.body]) - free_velocity[s.axis][s.face]) * row;
+    m.out.bodies[s.body] += s.fraction * (row.dot(m.in.bodies[s.body]) - stickingVelocity(s, row)) * row;
   }
   for (std::size_t b = 0; b < body_count; ++b) {
     state.liquid[b].force = -force_scale * m.out.bodies[b].head<3>();

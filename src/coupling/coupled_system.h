@@ -61,10 +61,11 @@ class CoupledSystem {
   void assemble(SolidFractions& solids, const std::vector<RigidBody>& bodies,
                 const std::vector<double>& liquid_distance, double density, double viscosity, double dt);
 
-  // free_twists: v* of free bodies, the prescribed twist of the others.
+  // free_velocity: u*, gravity included. free_twists: v* of free bodies, the prescribed twist of the others. Gravity (m/s^2)
+  // is what acts on the liquid that sticks to bodies.
   [[nodiscard]] CoupledReport solve(const FaceField<double>& free_velocity, const std::vector<Vector6d>& free_twists,
-                                    const std::vector<Contact>& contacts, const CoupledOptions& options,
-                                    CoupledState& state);
+                                    const std::vector<Contact>& contacts, const Eigen::Vector3d& gravity,
+                                    const CoupledOptions& options, CoupledState& state);
 
   const StaggeredCoefficients<double>& coefficients() const;
   const BodyRows& bodyRows() const;

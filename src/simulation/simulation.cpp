@@ -140,7 +140,7 @@ CoupledReport Simulation::Impl::solveWithLiquid(double dt, const std::vector<Vec
   options.tolerance = scene.solver.tolerance * (state.started ? 1.0 : kFirstTolerance);
   options.maximum_iterations = scene.solver.maximum_iterations;
   for (std::size_t b = 0; b < state.bodies.size(); ++b) state.coupled.twists[b] = state.bodies[b].twist;
-  return system.solve(free_velocity, free_twists, contacts, options, state.coupled);
+  return system.solve(free_velocity, free_twists, contacts, scene.gravity, options, state.coupled);
 }
 
 bool Simulation::Impl::substep(double dt, StepReport& step) {
