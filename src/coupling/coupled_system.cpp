@@ -381,12 +381,9 @@ CoupledReport CoupledSystem::solve(const FaceField<double>& free_velocity, const
   const LinearMap precondition = [&](const std::vector<double>& from, std::vector<double>& to) {
     to.resize(from.size());
     m.unpack(from, m.in);
-    for (auto& twist : m.out.bodies) twist.setZero();
     m.preconditioner.apply(m.in, m.out);
     // Bodies feel what the liquid has just been given.
-    StepVector& liquid_part = m.out;
-    for (auto& twist : liquid_part.bodies) twist.setZero();
-    m.op.apply(liquid_part, m.in);
+    m.op.bodyForces(m.out, m.in.bodies);
     for (auto& field : m.out.velocity) clearHalo(l, field);
     clearHalo(l, m.out.pressure);
     m.pack(m.out, to, false);

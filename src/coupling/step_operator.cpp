@@ -59,4 +59,32 @@ void StepOperator::apply(StepVector& x, StepVector& y) {
   }
 }
 
+void StepOperator::bodyForces(StepVector& x, std::vector<Vector6d>& forces) const {
+  const StaggeredCoefficients<double>& c = *coefficients_;
+  const Lattice& l = c.lattice;
+  for (auto& force : forces) force.setZero();
+  for (const BodyRow& row : rows_->divergence) forces[row.body] -= row.coefficient * x.pressure[row.sample];
+  if (!c.viscous) return;
+  for (auto& field : x.velocity) fillHalo(l, field);
+  for (int a = 0; a < 3; ++a) {
+    const auto& u = x.velocity[a];
+    for (const BodyRow& row : rows_->normal[a]) {
+      const double stress = c.normal[a][row.sample] * (u[row.sample + l.stride[a]] - u[row.sample]);
+      forces[row.body] += row.coefficient * stress;
+    }
+    for (const BodyRow& row : rows_->drag[a]) {
+      forces[row.body] -= row.coefficient * (c.drag[a][row.sample] * u[row.sample]);
+    }
+    const auto [first, second] = kShearPairs[a];
+    const auto& v = x.velocity[first];
+    const auto& w = x.velocity[second];
+    for (const BodyRow& row : rows_->shear[a]) {
+      const auto e = row.sample;
+      const double stress = c.shear[a][0][e] * (v[e] - v[e - l.stride[second]]) +
+                            c.shear[a][1][e] * (w[e] - w[e - l.stride[first]]);
+      forces[row.body] += row.coefficient * stress;
+    }
+  }
+}
+
 }  // namespace monolith

@@ -30,6 +30,10 @@ class StepOperator {
   void apply(StepVector& x, StepVector& y);
 
 
+  // The bodies' part of apply() for twists of zero, at the cost of the bodies' rows alone: what the liquid's velocity and
+  // pressure do to each body.
+  void bodyForces(StepVector& x, std::vector<Vector6d>& forces) const;
+
  private:
   const StaggeredCoefficients<double>* coefficients_ = nullptr;
   const BodyRows* rows_ = nullptr;

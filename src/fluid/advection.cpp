@@ -1,7 +1,6 @@
 #include "fluid/advection.h"
 
 #include "fluid/interpolation.h"
-#include <cstdlib>
 
 namespace monolith {
 namespace {
@@ -91,7 +90,7 @@ void advectVelocity(const MacGrid& grid, const FaceField<double>& velocity,
         if (!known[a][row + i]) continue;
         const Eigen::Vector3d x = Eigen::Vector3d(i, j, k) + offset;
         const Eigen::Vector3d foot = traceBack(grid, velocity, x, dt);
-        moved[a][row + i] = sampleCubic(l, velocity[a], foot - offset, getenv("LIM") == nullptr);
+        moved[a][row + i] = sampleCubic(l, velocity[a], foot - offset, true);
       }
     });
   }

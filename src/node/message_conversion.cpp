@@ -1,182 +1,143 @@
 #include "node/message_conversion.h"
 
 #include <cmath>
-#include <cstring>
 #include <sstream>
 
-namespace monolith {
+#include "node/request_error.h"
 
-using Eigen::Isometry3d;
+namespace monolith {
+namespace {
+
 using Eigen::Vector3d;
 
+constexpr double kUnitTolerance = 0.01;
+
+std::string shown(const double* values, int count) {
+  std::ostringstream stream;
+  for (int i = 0; i < count; ++i) stream << (i ? ", " : "[") << values[i];
+  stream << "]";
+  return stream.str();
+}
+
+Vector3d checked(const Vector3d& v, const std::string& field) {
+  if (!v.allFinite()) throw RequestError(field + ": value " + shown(v.data(), 3) + ": expected finite numbers");
+  return v;
+}
+
+}  // namespace
+
+geometry_msgs::Point toPoint(const Vector3d& v) {
+  geometry_msgs::Point message;
+  message.x = v.x();
+  message.y = v.y();
+  message.z = v.z();
+  return message;
+}
+
 geometry_msgs::Vector3 toVector(const Vector3d& v) {
-  geometry_msgs::Vector3 out;
-  out.x = v.x();
-  out.y = v.y();
-  out.z = v.z();
-  return out;
+  geometry_msgs::Vector3 message;
+  message.x = v.x();
+  message.y = v.y();
+  message.z = v.z();
+  return message;
 }
 
-geometry_msgs::Point toPoint(const Vector3d& p) {
-  geometry_msgs::Point out;
-  out.x = p.x();
-  out.y = p.y();
-  out.z = p.z();
-  return out;
+geometry_msgs::Quaternion toQuaternion(const Eigen::Quaterniond& q) {
+  geometry_msgs::Quaternion message;
+  message.x = q.x();
+  message.y = q.y();
+  message.z = q.z();
+  message.w = q.w();
+  return message;
 }
 
-geometry_msgs::Pose toPose(const Isometry3d& X) {
-  const Eigen::Quaterniond q = Eigen::Quaterniond(X.linear()).normalized();
-  geometry_msgs::Pose out;
-  out.position = toPoint(X.translation());
-  out.orientation.x = q.x();
-  out.orientation.y = q.y();
-  out.orientation.z = q.z();
-  out.orientation.w = q.w();
-  return out;
+geometry_msgs::Pose toPose(const Eigen::Isometry3d& X) {
+  geometry_msgs::Pose message;
+  message.position = toPoint(X.translation());
+  message.orientation = toQuaternion(Eigen::Quaterniond(X.linear()));
+  return message;
 }
 
-geometry_msgs::Transform toTransform(const Isometry3d& X) {
-  geometry_msgs::Transform out;
-  out.translation = toVector(X.translation());
-  out.rotation = toPose(X).orientation;
-  return out;
+geometry_msgs::Transform toTransform(const Eigen::Isometry3d& X) {
+  geometry_msgs::Transform message;
+  message.translation = toVector(X.translation());
+  message.rotation = toQuaternion(Eigen::Quaterniond(X.linear()));
+  return message;
 }
 
-geometry_msgs::Twist toTwist(const Vector3d& linear, const Vector3d& angular) {
-  geometry_msgs::Twist out;
-  out.linear = toVector(linear);
-  out.angular = toVector(angular);
-  return out;
+geometry_msgs::Twist toTwist(const Vector3d& velocity, const Vector3d& angular_velocity) {
+  geometry_msgs::Twist message;
+  message.linear = toVector(velocity);
+  message.angular = toVector(angular_velocity);
+  return message;
 }
 
 geometry_msgs::Wrench toWrench(const Wrench& wrench) {
-  geometry_msgs::Wrench out;
-  out.force = toVector(wrench.force);
-  out.torque = toVector(wrench.torque);
-  return out;
+  geometry_msgs::Wrench message;
+  message.force = toVector(wrench.force);
+  message.torque = toVector(wrench.torque);
+  return message;
 }
 
-Vector3d toEigen(const geometry_msgs::Vector3& v) { return Vector3d(v.x, v.y, v.z); }
-Vector3d toEigen(const geometry_msgs::Point& p) { return Vector3d(p.x, p.y, p.z); }
-
-Isometry3d toIsometry(const geometry_msgs::Transform& transform) {
-  geometry_msgs::Pose pose;
-  pose.position = toPoint(toEigen(transform.translation));
-  pose.orientation = transform.rotation;
-  return toIsometry(pose);
+monolith_tank::Statistics toStatistics(const StepReport& report, double real_time_factor) {
+  monolith_tank::Statistics message;
+  message.step = static_cast<std::uint64_t>(report.step);
+  message.time = report.time;
+  message.committed = report.committed();
+  message.status = toString(report.status);
+  message.message = report.message;
+  message.substeps = static_cast<std::uint32_t>(report.substeps);
+  message.iterations = static_cast<std::uint32_t>(report.iterations);
+  message.liquid_solves = static_cast<std::uint32_t>(report.liquid_solves);
+  message.residual = report.residual;
+  message.divergence = report.divergence;
+  message.maximum_speed = report.maximum_speed;
+  message.liquid_volume = report.liquid_volume;
+  message.volume_correction = report.volume_correction;
+  message.kinetic_energy = report.kinetic_energy;
+  message.potential_energy = report.potential_energy;
+  message.penetration = report.penetration;
+  message.liquid = report.model.liquid;
+  message.viscosity = report.model.viscosity;
+  message.free_surface = report.model.free_surface;
+  message.coupled_bodies = static_cast<std::uint32_t>(report.model.coupled_bodies);
+  message.contacts = static_cast<std::uint32_t>(report.model.contacts);
+  message.advection_time = report.times.advection;
+  message.contact_time = report.times.contact;
+  message.geometry_time = report.times.geometry;
+  message.solve_time = report.times.solve;
+  message.surface_time = report.times.surface;
+  message.total_time = report.times.total;
+  message.real_time_factor = real_time_factor;
+  return message;
 }
 
-std::string poseViolation(const geometry_msgs::Pose& pose) {
-  const auto& q = pose.orientation;
-  if (!toEigen(pose.position).allFinite()) {
-    return "position " + shown(toEigen(pose.position)) + ": expected finite numbers";
+Vector3d fromMessage(const geometry_msgs::Point& message, const std::string& field) {
+  return checked(Vector3d(message.x, message.y, message.z), field);
+}
+
+Vector3d fromMessage(const geometry_msgs::Vector3& message, const std::string& field) {
+  return checked(Vector3d(message.x, message.y, message.z), field);
+}
+
+Eigen::Isometry3d fromMessage(const geometry_msgs::Pose& message, const std::string& field) {
+  const geometry_msgs::Quaternion& o = message.orientation;
+  Eigen::Quaterniond q(o.w, o.x, o.y, o.z);
+  if (!(std::abs(q.norm() - 1.0) <= kUnitTolerance)) {
+    throw RequestError(field + ".orientation: value " + shown(q.coeffs().data(), 4) +
+                       ": expected a quaternion [x, y, z, w] of length 1");
   }
-  const double norm = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-  if (std::abs(norm - 1.0) <= 1e-3) return "";
-  std::ostringstream text;
-  text << "orientation [" << q.x << ", " << q.y << ", " << q.z << ", " << q.w
-       << "]: expected a unit quaternion x, y, z, w";
-  return text.str();
-}
-
-Isometry3d toIsometry(const geometry_msgs::Pose& pose) {
-  const auto& q = pose.orientation;
-  Isometry3d X(Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized());
-  X.translation() = toEigen(pose.position);
+  q.normalize();
+  Eigen::Isometry3d X(q);
+  X.translation() = fromMessage(message.position, field + ".position");
   return X;
 }
 
-std::string shown(const Vector3d& v) {
-  std::ostringstream text;
-  text << "[" << v.x() << ", " << v.y() << ", " << v.z() << "]";
-  return text.str();
-}
-
-monolith_tank::BodyStates toBodyStates(const std_msgs::Header& header, const std::vector<BodyDescription>& bodies,
-                                       const std::vector<BodyState>& states) {
-  monolith_tank::BodyStates out;
-  out.header = header;
-  for (std::size_t b = 0; b < states.size(); ++b) {
-    out.names.push_back(bodies[b].name);
-    out.poses.push_back(toPose(states[b].X_WB));
-    out.twists.push_back(toTwist(states[b].velocity, states[b].angular_velocity));
-    out.liquid_wrenches.push_back(toWrench(states[b].liquid));
-    out.contact_wrenches.push_back(toWrench(states[b].contact));
-  }
-  return out;
-}
-
-nav_msgs::Odometry toOdometry(const std_msgs::Header& header, const std::string& body, const BodyState& state) {
-  const Eigen::Matrix3d R_BW = state.X_WB.linear().transpose();
-  nav_msgs::Odometry out;
-  out.header = header;
-  out.child_frame_id = body;
-  out.pose.pose = toPose(state.X_WB);
-  out.twist.twist = toTwist(R_BW * state.velocity, R_BW * state.angular_velocity);
-  return out;
-}
-
-sensor_msgs::PointCloud2 toPointCloud(const std_msgs::Header& header, const std::vector<SurfacePoint>& points) {
-  sensor_msgs::PointCloud2 out;
-  out.header = header;
-  for (const char* name : {"x", "y", "z", "normal_x", "normal_y", "normal_z", "vx", "vy", "vz"}) {
-    sensor_msgs::PointField field;
-    field.name = name;
-    field.offset = static_cast<std::uint32_t>(out.fields.size() * sizeof(float));
-    field.datatype = sensor_msgs::PointField::FLOAT32;
-    field.count = 1;
-    out.fields.push_back(field);
-  }
-  out.height = 1;
-  out.width = static_cast<std::uint32_t>(points.size());
-  out.point_step = static_cast<std::uint32_t>(out.fields.size() * sizeof(float));
-  out.row_step = out.width * out.point_step;
-  out.is_dense = true;
-  out.data.resize(out.row_step);
-  std::uint8_t* at = out.data.data();
-  for (const SurfacePoint& point : points) {
-    for (const Eigen::Vector3f* part : {&point.position, &point.normal, &point.velocity}) {
-      std::memcpy(at, part->data(), 3 * sizeof(float));
-      at += 3 * sizeof(float);
-    }
-  }
-  return out;
-}
-
-monolith_tank::Statistics toStatistics(const std_msgs::Header& header, const StepReport& report,
-                                       double real_time_factor) {
-  monolith_tank::Statistics out;
-  out.header = header;
-  out.step = static_cast<std::uint64_t>(report.step);
-  out.time = report.time;
-  out.committed = report.committed();
-  out.status = toString(report.status);
-  out.message = report.message;
-  out.substeps = report.substeps;
-  out.iterations = report.iterations;
-  out.liquid_solves = report.liquid_solves;
-  out.residual = report.residual;
-  out.divergence = report.divergence;
-  out.maximum_speed = report.maximum_speed;
-  out.liquid_volume = report.liquid_volume;
-  out.volume_correction = report.volume_correction;
-  out.kinetic_energy = report.kinetic_energy;
-  out.potential_energy = report.potential_energy;
-  out.penetration = report.penetration;
-  out.liquid = report.model.liquid;
-  out.viscosity = report.model.viscosity;
-  out.free_surface = report.model.free_surface;
-  out.coupled_bodies = report.model.coupled_bodies;
-  out.contacts = report.model.contacts;
-  out.advection_time = report.times.advection;
-  out.contact_time = report.times.contact;
-  out.geometry_time = report.times.geometry;
-  out.solve_time = report.times.solve;
-  out.surface_time = report.times.surface;
-  out.total_time = report.times.total;
-  out.real_time_factor = real_time_factor;
-  return out;
+Eigen::Isometry3d fromTransform(const geometry_msgs::Transform& message) {
+  const geometry_msgs::Quaternion& o = message.rotation;
+  Eigen::Isometry3d X(Eigen::Quaterniond(o.w, o.x, o.y, o.z).normalized());
+  X.translation() = Vector3d(message.translation.x, message.translation.y, message.translation.z);
+  return X;
 }
 
 }  // namespace monolith

@@ -1,54 +1,39 @@
 #pragma once
-// Between the library's types and ROS messages.
+// Between Eigen and ROS messages. Whatever comes in is checked: RequestError names the field and its value.
 
 #include <geometry_msgs/Point.h>
 #include <geometry_msgs/Pose.h>
+#include <geometry_msgs/Quaternion.h>
 #include <geometry_msgs/Transform.h>
 #include <geometry_msgs/Twist.h>
 #include <geometry_msgs/Vector3.h>
 #include <geometry_msgs/Wrench.h>
-#include <monolith_tank/BodyStates.h>
 #include <monolith_tank/Statistics.h>
-#include <nav_msgs/Odometry.h>
-#include <sensor_msgs/PointCloud2.h>
-#include <std_msgs/Header.h>
+#include <ros/time.h>
 
 #include <Eigen/Geometry>
 #include <string>
-#include <vector>
 
-#include "scene/scene.h"
-#include "simulation/simulation.h"
+#include "rigid/integration.h"
+#include "simulation/statistics.h"
 
 namespace monolith {
 
+geometry_msgs::Point toPoint(const Eigen::Vector3d& v);
 geometry_msgs::Vector3 toVector(const Eigen::Vector3d& v);
-geometry_msgs::Point toPoint(const Eigen::Vector3d& p);
+geometry_msgs::Quaternion toQuaternion(const Eigen::Quaterniond& q);
 geometry_msgs::Pose toPose(const Eigen::Isometry3d& X);
 geometry_msgs::Transform toTransform(const Eigen::Isometry3d& X);
-geometry_msgs::Twist toTwist(const Eigen::Vector3d& linear, const Eigen::Vector3d& angular);
+geometry_msgs::Twist toTwist(const Eigen::Vector3d& velocity, const Eigen::Vector3d& angular_velocity);
 geometry_msgs::Wrench toWrench(const Wrench& wrench);
+// All but the header.
+monolith_tank::Statistics toStatistics(const StepReport& report, double real_time_factor);
 
-Eigen::Vector3d toEigen(const geometry_msgs::Vector3& v);
-Eigen::Vector3d toEigen(const geometry_msgs::Point& p);
-Eigen::Isometry3d toIsometry(const geometry_msgs::Transform& transform);
-
-// Why a pose is none ("orientation [0, 0, 0, 0]: expected a unit quaternion"); empty if it is one. A norm off 1 by up
-// to 0.001 is taken for rounding.
-std::string poseViolation(const geometry_msgs::Pose& pose);
-// Of a pose without violation.
-Eigen::Isometry3d toIsometry(const geometry_msgs::Pose& pose);
-
-// "[1, 2, 3]", for messages.
-std::string shown(const Eigen::Vector3d& v);
-
-monolith_tank::BodyStates toBodyStates(const std_msgs::Header& header, const std::vector<BodyDescription>& bodies,
-                                       const std::vector<BodyState>& states);
-// Twist in the child frame, as nav_msgs has it.
-nav_msgs::Odometry toOdometry(const std_msgs::Header& header, const std::string& body, const BodyState& state);
-// float32 x y z, normal_x normal_y normal_z, vx vy vz.
-sensor_msgs::PointCloud2 toPointCloud(const std_msgs::Header& header, const std::vector<SurfacePoint>& points);
-monolith_tank::Statistics toStatistics(const std_msgs::Header& header, const StepReport& report,
-                                       double real_time_factor);
+// `field` is how the caller knows the value, for example "wrench.force".
+Eigen::Vector3d fromMessage(const geometry_msgs::Point& message, const std::string& field);
+Eigen::Vector3d fromMessage(const geometry_msgs::Vector3& message, const std::string& field);
+// A quaternion within 1 % of unit length is normalised.
+Eigen::Isometry3d fromMessage(const geometry_msgs::Pose& message, const std::string& field);
+Eigen::Isometry3d fromTransform(const geometry_msgs::Transform& message);
 
 }  // namespace monolith

@@ -1,7 +1,7 @@
 #include "node/scene_lookup.h"
 
-#include <ros/node_handle.h>
 #include <ros/package.h>
+#include <ros/param.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -14,40 +14,42 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::string> shippedScenes(const fs::path& folder) {
-  std::vector<std::string> names;
+constexpr char kPackage[] = "monolith_tank";
+
+}  // namespace
+
+std::string findSceneFile(const std::string& scene) {
+  const fs::path given(scene);
   std::error_code error;
+  if (scene.find('/') != std::string::npos || given.extension() == ".yaml") {
+    if (!fs::is_regular_file(given, error)) {
+      throw SceneError("~scene: value " + scene + ": no such file: expected a readable file at " +
+                       fs::absolute(given).string());
+    }
+    return fs::absolute(given).lexically_normal().string();
+  }
+  const fs::path folder = fs::path(ros::package::getPath(kPackage)) / "config/scenes";
+  std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
     if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
   }
   std::sort(names.begin(), names.end());
-  return names;
-}
-
-}  // namespace
-
-std::string sceneFile(const std::string& scene) {
-  const fs::path path(scene);
-  if (path.has_parent_path() || path.has_extension() || fs::exists(path)) return scene;
-  const std::string package = ros::package::getPath("monolith_tank");
-  const fs::path folder = fs::path(package) / "config" / "scenes";
-  const fs::path shipped = folder / (scene + ".yaml");
-  if (!package.empty() && fs::exists(shipped)) return shipped.string();
-  const std::vector<std::string> names = shippedScenes(folder);
-  std::string message = "scene \"" + scene + "\": no shipped scene and no file of that name";
   if (names.empty()) {
-    message += ": expected package monolith_tank on ROS_PACKAGE_PATH, or the path of a scene file";
-  } else {
-    message += ": nearest shipped scene is \"" + nearestWord(scene, names) + "\" in " + folder.string();
+    throw SceneError("~scene: value " + scene + ": expected shipped scenes in " + folder.string() +
+                     ", is the package " + kPackage + " on ROS_PACKAGE_PATH?");
   }
-  throw SceneError(message);
+  if (std::find(names.begin(), names.end(), scene) == names.end()) {
+    throw SceneError("~scene: value " + scene + ": expected the path of a scene file or the name of a shipped scene, "
+                     "the nearest is \"" + nearestWord(scene, names) + "\"");
+  }
+  return (folder / (scene + ".yaml")).string();
 }
 
-SceneResolver rosResolver() {
+SceneResolver makeRosResolver() {
   SceneResolver resolver;
   resolver.package_path = [](const std::string& package) { return ros::package::getPath(package); };
   resolver.parameter = [](const std::string& parameter, std::string& text) {
-    return ros::NodeHandle("~").getParam(parameter, text);
+    return ros::param::get(parameter, text);
   };
   return resolver;
 }

@@ -1,5 +1,6 @@
 #pragma once
-// From the ~scene parameter to a Scene: shipped names, package:// and URDF texts on the parameter server.
+// Where the node finds a scene and what it refers to: shipped scenes in this package, package:// by the ROS package
+// path, URDF texts on the parameter server.
 
 #include <string>
 
@@ -7,11 +8,10 @@
 
 namespace monolith {
 
-// Path of a shipped scene's file if `scene` is such a name, otherwise `scene` itself taken as a path. Throws
-// SceneError, with the nearest shipped name, if a bare name is neither.
-std::string sceneFile(const std::string& scene);
+// Path of a scene file. `scene` is a path if it has a "/" or ends in .yaml, otherwise the name of a scene in the
+// package's config/scenes. Throws SceneError; of an unknown name it tells the nearest known one.
+std::string findSceneFile(const std::string& scene);
 
-// package:// by the package path, parameters as seen from the node's private namespace.
-SceneResolver rosResolver();
+SceneResolver makeRosResolver();
 
 }  // namespace monolith

@@ -73,25 +73,30 @@ std::vector<double> hydrostaticPressure(const MacGrid& grid, const FreeSurface& 
   return pressure;
 }
 
-LiquidEnergy liquidEnergy(const MacGrid& grid, const StaggeredCoefficients<double>& coefficients,
+LiquidBudget liquidBudget(const MacGrid& grid, const StaggeredCoefficients<double>& coefficients,
                           const FaceField<double>& velocity, const FreeSurface& surface,
                           const std::vector<double>& cell_fluid, double density, const Eigen::Vector3d& gravity) {
   const Lattice& l = grid.lattice;
-  LiquidEnergy energy;
+  LiquidBudget budget;
   for (int k = 0; k < l.faceEnd(2); ++k) {
     for (int j = 0; j < l.faceEnd(1); ++j) {
       for (int i = 0; i < l.faceEnd(0); ++i) {
         const auto c = l.index(i, j, k);
-        for (int a = 0; a < 3; ++a) energy.kinetic += 0.5 * coefficients.mass[a][c] * velocity[a][c] * velocity[a][c];
+        for (int a = 0; a < 3; ++a) {
+          const double momentum = coefficients.mass[a][c] * velocity[a][c];
+          budget.momentum[a] += momentum;
+          budget.kinetic += 0.5 * momentum * velocity[a][c];
+        }
         if (i >= l.n[0] || j >= l.n[1] || k >= l.n[2]) continue;
         const double part = std::clamp(0.5 - surface.distance()[c], 0.0, 1.0) * cell_fluid[c];
-        if (part > 0.0) energy.potential -= part * gravity.dot(grid.cellCenter(i, j, k));
+        if (part > 0.0) budget.potential -= part * gravity.dot(grid.cellCenter(i, j, k));
       }
     }
   }
-  energy.kinetic *= density * grid.cellVolume();
-  energy.potential *= density * grid.cellVolume();
-  return energy;
+  budget.kinetic *= density * grid.cellVolume();
+  budget.potential *= density * grid.cellVolume();
+  budget.momentum *= density * grid.cellVolume();
+  return budget;
 }
 
 std::vector<SurfacePoint> sampleSurface(const MacGrid& grid, const FreeSurface& surface,

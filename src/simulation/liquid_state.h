@@ -22,11 +22,12 @@ void completeVelocity(const MacGrid& grid, const StaggeredCoefficients<double>& 
 std::vector<double> hydrostaticPressure(const MacGrid& grid, const FreeSurface& surface, double density,
                                         const Eigen::Vector3d& gravity);
 
-struct LiquidEnergy {
+struct LiquidBudget {
   double kinetic = 0.0;    // J
   double potential = 0.0;  // J, zero at the world's origin
+  Eigen::Vector3d momentum = Eigen::Vector3d::Zero();  // kg m/s, in W
 };
-LiquidEnergy liquidEnergy(const MacGrid& grid, const StaggeredCoefficients<double>& coefficients,
+LiquidBudget liquidBudget(const MacGrid& grid, const StaggeredCoefficients<double>& coefficients,
                           const FaceField<double>& velocity, const FreeSurface& surface,
                           const std::vector<double>& cell_fluid, double density, const Eigen::Vector3d& gravity);
 

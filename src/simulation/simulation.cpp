@@ -206,10 +206,11 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
 void Simulation::Impl::measure(StepReport& step) const {
   if (hasLiquid()) {
     step.liquid_volume = state.surface[0].volume(solids.cell_fluid);
-    const LiquidEnergy energy = liquidEnergy(grid, system.coefficients(), state.coupled.velocity, state.surface[0],
+    const LiquidBudget budget = liquidBudget(grid, system.coefficients(), state.coupled.velocity, state.surface[0],
                                              solids.cell_fluid, scene.liquid.density, scene.gravity);
-    step.kinetic_energy = energy.kinetic;
-    step.potential_energy = energy.potential;
+    step.kinetic_energy = budget.kinetic;
+    step.potential_energy = budget.potential;
+    step.liquid_momentum = budget.momentum;
   }
   for (const RigidBody& body : state.bodies) {
     if (body.motion != BodyMotion::kFree) continue;

@@ -1,6 +1,7 @@
 #pragma once
 // What a step tells about itself. Every step returns one; `~statistics` publishes it.
 
+#include <Eigen/Dense>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,7 @@ struct StepReport {
   double liquid_volume = 0.0;      // m^3
   double volume_correction = 0.0;  // m^3, signed, that the surface was corrected by in this step
   double kinetic_energy = 0.0;     // J, liquid and bodies
+  Eigen::Vector3d liquid_momentum = Eigen::Vector3d::Zero();  // kg m/s, in W
   double potential_energy = 0.0;   // J, liquid and bodies, zero at the world's origin
   double penetration = 0.0;        // m, deepest
   ModelChoice model;

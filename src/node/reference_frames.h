@@ -1,0 +1,44 @@
+#pragma once
+// Poses of tf frames in the world at the moment of the simulation's state. The node's own frames - the world, each body
+// ("<body>") and each of its links ("<body>/<link>") - come from the state itself. Any other frame is followed through
+// tf to the nearest of those, so that a frame fixed to a body is exactly where the body is.
+
+#include <tf2/buffer_core.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "rigid/rigid_body.h"
+#include "scene/scene.h"
+
+namespace monolith {
+
+class ReferenceFrames {
+ public:
+  // Throws SceneError if a body has the name of the world frame. `transforms` must outlive this.
+  ReferenceFrames(const Scene& scene, const std::string& world_frame, const tf2::BufferCore& transforms);
+
+  // X_WF. Throws RequestError if the frame is not connected to the world, naming the nearest known frame.
+  Eigen::Isometry3d pose(const std::string& frame, const std::vector<RigidBody>& bodies) const;
+
+  const std::string& worldFrame() const { return world_frame_; }
+  static std::string linkFrame(const std::string& body, const std::string& link) { return body + "/" + link; }
+
+ private:
+  struct OwnFrame {
+    int body;                   // -1: the world
+    Eigen::Isometry3d X_BF;
+  };
+
+  Eigen::Isometry3d poseOf(const OwnFrame& frame, const std::vector<RigidBody>& bodies) const;
+  // The frame itself or the first of its ancestors in tf that is ours; empty if there is none.
+  std::string ownAncestor(const std::string& frame) const;
+  [[noreturn]] void throwUnknown(const std::string& frame) const;
+
+  std::string world_frame_;
+  std::map<std::string, OwnFrame> own_;
+  const tf2::BufferCore& transforms_;
+};
+
+}  // namespace monolith

@@ -1,0 +1,63 @@
+#include "node/tank_control.h"
+
+#include <exception>
+
+#include "node/request_error.h"
+#include "scene/yaml_map.h"
+
+namespace monolith {
+
+TankControl::TankControl(const Scene& scene, const std::string& world_frame, const tf2::BufferCore& transforms)
+    : simulation_(scene),
+      frames_(scene, world_frame, transforms),
+      wrenches_(static_cast<int>(scene.bodies.size())) {}
+
+int TankControl::findBody(const std::string& name, const std::string& field) const {
+  std::vector<std::string> names;
+  for (const BodyDescription& body : simulation_.scene().bodies) {
+    if (body.name == name) return static_cast<int>(names.size());
+    names.push_back(body.name);
+  }
+  const std::string nearest = names.empty() ? "but the scene has none" : "the nearest is \"" + nearestWord(name, names) + "\"";
+  throw RequestError(field + ": value \"" + name + "\": expected a body of the scene, " + nearest);
+}
+
+void TankControl::requireFree(int body, const std::string& field) const {
+  const BodyDescription& description = simulation_.scene().bodies[body];
+  if (description.motion == BodyMotion::kFree) return;
+  throw RequestError(field + ": value \"" + description.name + "\": this body is " +
+                     (description.motion == BodyMotion::kFixed ? "fixed" : "moved as the scene prescribes") +
+                     ": expected one with motion: free");
+}
+
+Eigen::Isometry3d TankControl::framePose(const std::string& frame, const std::string& field) const {
+  try {
+    return frames_.pose(frame.empty() ? frames_.worldFrame() : frame, simulation_.bodies());
+  } catch (const RequestError& error) {
+    throw RequestError(field + ": " + error.what());
+  }
+}
+
+StepReport TankControl::step(std::vector<std::string>& lost) {
+  const auto frame_pose = [this](const std::string& frame) {
+    return frames_.pose(frame.empty() ? frames_.worldFrame() : frame, simulation_.bodies());
+  };
+  const std::vector<Wrench> wrenches =
+      wrenches_.evaluate(simulation_.time(), simulation_.bodies(), frame_pose, lost);
+  try {
+    for (std::size_t b = 0; b < wrenches.size(); ++b) simulation_.setWrench(static_cast<int>(b), wrenches[b]);
+    return simulation_.step();
+  } catch (const std::exception& error) {
+    StepReport report = simulation_.report();
+    report.status = SolveStatus::kNotConverged;
+    report.message = error.what();
+    return report;
+  }
+}
+
+void TankControl::reset() {
+  wrenches_.clear();
+  simulation_.reset();
+}
+
+}  // namespace monolith

@@ -1,0 +1,173 @@
+#include "node/tank_node.h"
+
+namespace monolith {
+namespace {
+
+constexpr double kIdleSec = 0.02;           // between looks at the queue while paused
+constexpr double kHeartbeatSec = 0.1;       // between repetitions of /clock while time stands still
+constexpr double kRecorderTimeoutSec = 20.0;
+constexpr double kLingerSec = 0.5;          // for the last messages to leave before the node does
+constexpr std::uint32_t kMostSteps = 100000;
+
+double wallNow() { return ros::SteadyTime::now().toSec(); }
+
+}  // namespace
+
+TankNode::TankNode(ros::NodeHandle& global, ros::NodeHandle& local, ros::CallbackQueue& queue,
+                   const NodeOptions& options, const Scene& scene)
+    : options_(options),
+      queue_(queue),
+      control_(scene, options.world_frame, transforms_),
+      publisher_(global, local, options, control_.simulation()),
+      diagnostics_(scene.name),
+      listener_(transforms_, global, false),
+      wrench_input_(local, control_, options.wrench_timeout_sec, [this](const std::string& text) { refuse(text); }),
+      body_services_(local, control_, options.world_frame,
+                     {[this] { return publisher_.stamp(); }, [this](const std::string& text) { refuse(text); },
+                      [this] { publisher_.publish(control_.simulation().report(), factor_.value(), true); }}) {
+  servers_.push_back(local.advertiseService("pause_physics", &TankNode::pause, this));
+  servers_.push_back(local.advertiseService("unpause_physics", &TankNode::unpause, this));
+  servers_.push_back(local.advertiseService("reset_simulation", &TankNode::reset, this));
+  servers_.push_back(local.advertiseService("step", &TankNode::stepPhysics, this));
+  health_.paced = options.paced;
+  if (options.progress && options.duration_sec > 0.0) progress_ = std::make_unique<ProgressBar>(options.duration_sec);
+  const double possible = 1.0 / scene.time_step;
+  if (options.state_rate_hz > possible * (1.0 + 1e-9)) {
+    ROS_WARN("~state_rate: %g Hz asked, but the scene's time_step of %g s gives at most %g Hz: publishing after every step",
+             options.state_rate_hz, scene.time_step, possible);
+  }
+  if (!ros::Time::isSimTime()) {
+    ROS_WARN("/use_sim_time is not set: messages have simulated time, but other nodes do not follow it");
+  }
+}
+
+void TankNode::run() {
+  if (options_.wait_for_recorder) waitForRecorder();
+  publisher_.publishConstant();
+  publisher_.publish(control_.simulation().report(), 0.0, true);
+  setPaused(options_.start_paused);
+  while (ros::ok() && !isFinished()) {
+    updateDiagnostics(false);
+    if (health_.paused) {
+      serve(kIdleSec);
+      continue;
+    }
+    const double due = control_.simulation().time() + control_.simulation().scene().time_step;
+    const double wait = options_.paced ? pacer_.remaining(wallNow(), due) : 0.0;
+    // Callers may pause or reset: then everything is looked at anew.
+    serve(std::max(wait, 0.0));
+    if (wait <= 0.0 && !health_.paused) advance();
+  }
+  progress_.reset();
+  if (ros::ok()) linger();
+}
+
+void TankNode::serve(double wall_sec) {
+  if (ros::WallTime::now() - last_heartbeat_ > ros::WallDuration(kHeartbeatSec)) {
+    last_heartbeat_ = ros::WallTime::now();
+    publisher_.publishClock();
+  }
+  queue_.callAvailable(ros::WallDuration(std::min(wall_sec, kHeartbeatSec)));
+}
+
+void TankNode::waitForRecorder() {
+  const double start = wallNow();
+  std::vector<std::string> missing = publisher_.topicsWithoutSubscriber();
+  while (ros::ok() && !missing.empty() && wallNow() - start < kRecorderTimeoutSec) {
+    serve(kIdleSec);
+    missing = publisher_.topicsWithoutSubscriber();
+  }
+  for (const std::string& topic : missing) {
+    ROS_WARN("~wait_for_recorder: nobody subscribed to %s in %g s: expected a recorder, starting without",
+             topic.c_str(), kRecorderTimeoutSec);
+  }
+}
+
+void TankNode::linger() {
+  updateDiagnostics(true);
+  const double end = wallNow() + kLingerSec;
+  while (ros::ok() && wallNow() < end) serve(kIdleSec);
+}
+
+bool TankNode::isFinished() const {
+  // Half a step of slack: the time is a sum of steps.
+  return options_.duration_sec > 0.0 &&
+         control_.simulation().time() >= options_.duration_sec - 0.5 * control_.simulation().scene().time_step;
+}
+
+bool TankNode::advance() {
+  std::vector<std::string> lost;
+  health_.report = control_.step(lost);
+  for (const std::string& message : lost) refuse(message);
+  health_.failed = !health_.report.committed();
+  if (health_.failed) {
+    ROS_ERROR("Step %ld at %g s not committed: %s: %s. The state is as before the step and the simulation is paused; "
+              "~unpause_physics tries again, ~reset_simulation starts over.",
+              health_.report.step + 1, control_.simulation().time(), toString(health_.report.status),
+              health_.report.message.c_str());
+    publisher_.publishStatistics(health_.report, factor_.value());
+    setPaused(true);
+    return false;
+  }
+  if (health_.initial_volume == 0.0) health_.initial_volume = health_.report.liquid_volume;
+  factor_.add(wallNow(), control_.simulation().time());
+  health_.real_time_factor = factor_.value();
+  publisher_.publish(health_.report, health_.real_time_factor, isFinished());
+  if (progress_) progress_->update(wallNow(), control_.simulation().time(), health_.real_time_factor);
+  return true;
+}
+
+void TankNode::setPaused(bool paused) {
+  health_.paused = paused;
+  pacer_.restart(wallNow(), control_.simulation().time());
+  factor_.restart();
+  if (!paused) factor_.add(wallNow(), control_.simulation().time());
+  updateDiagnostics(true);
+}
+
+void TankNode::refuse(const std::string& message) {
+  ROS_ERROR_STREAM("Refused: " << message);
+  diagnostics_.countRefusal(message);
+}
+
+void TankNode::updateDiagnostics(bool force) { diagnostics_.update(health_, force); }
+
+bool TankNode::pause(std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
+  setPaused(true);
+  return true;
+}
+
+bool TankNode::unpause(std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
+  setPaused(false);
+  return true;
+}
+
+bool TankNode::reset(std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
+  control_.reset();
+  health_.report = control_.simulation().report();
+  health_.failed = false;
+  health_.initial_volume = 0.0;
+  publisher_.publish(health_.report, 0.0, true);
+  setPaused(health_.paused);
+  return true;
+}
+
+bool TankNode::stepPhysics(monolith_tank::StepPhysics::Request& request,
+                           monolith_tank::StepPhysics::Response& response) {
+  response.success = false;
+  if (!health_.paused) {
+    response.message = "the simulation is running: expected it paused, call ~pause_physics first";
+  } else if (request.steps < 1 || request.steps > kMostSteps) {
+    response.message = "steps: value " + std::to_string(request.steps) + ": expected 1 to " + std::to_string(kMostSteps);
+  } else {
+    response.success = true;
+    for (std::uint32_t i = 0; i < request.steps && response.success && ros::ok(); ++i) response.success = advance();
+    if (!response.success) response.message = health_.report.message;
+    setPaused(true);
+  }
+  if (!response.success) refuse("~step: " + response.message);
+  response.time = publisher_.stamp();
+  return true;
+}
+
+}  // namespace monolith

@@ -1,0 +1,45 @@
+#include "node/wrench_input.h"
+
+#include "node/message_conversion.h"
+#include "node/request_error.h"
+
+namespace monolith {
+namespace {
+
+constexpr int kQueueSize = 10;
+
+}  // namespace
+
+WrenchInput::WrenchInput(ros::NodeHandle& local, TankControl& control, double timeout_sec, Refuse refuse)
+    : control_(control), timeout_sec_(timeout_sec), refuse_(std::move(refuse)) {
+  const std::vector<BodyDescription>& bodies = control.simulation().scene().bodies;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (bodies[b].motion != BodyMotion::kFree) continue;
+    const std::string topic = local.resolveName(bodies[b].name + "/wrench");
+    const int body = static_cast<int>(b);
+    const boost::function<void(const geometry_msgs::WrenchStamped&)> callback =
+        [this, body, topic](const geometry_msgs::WrenchStamped& message) { receive(message, body, topic); };
+    subscribers_.push_back(local.subscribe<geometry_msgs::WrenchStamped, const geometry_msgs::WrenchStamped&>(
+        bodies[b].name + "/wrench", kQueueSize, callback));
+  }
+}
+
+void WrenchInput::receive(const geometry_msgs::WrenchStamped& message, int body, const std::string& topic) {
+  try {
+    if (message.header.frame_id.empty()) {
+      throw RequestError("header.frame_id: value \"\": expected a tf frame, such as the world's or the body's");
+    }
+    WrenchCommand command;
+    command.frame = message.header.frame_id;
+    command.force = fromMessage(message.wrench.force, "wrench.force");
+    command.torque = fromMessage(message.wrench.torque, "wrench.torque");
+    control_.framePose(command.frame, "header.frame_id");  // refused now rather than in the step
+    command.start = control_.simulation().time();
+    command.end = command.start + timeout_sec_;
+    control_.wrenches().hold(body, command);
+  } catch (const RequestError& error) {
+    refuse_(topic + ": " + error.what());
+  }
+}
+
+}  // namespace monolith
