@@ -185,6 +185,23 @@ CoupledSystem::~CoupledSystem() = default;
 const StaggeredCoefficients<double>& CoupledSystem::coefficients() const { return impl_->coefficients; }
 const BodyRows& CoupledSystem::bodyRows() const { return impl_->rows; }
 
+double CoupledSystem::stickingEnergy(const std::vector<Vector6d>& twists) const {
+  double sum = 0.0;
+  for (const StickingLiquid& s : impl_->sticking) {
+    const double u = velocityRow(s.axis, s.position, (*impl_->bodies)[s.body].p_WBcm).dot(twists[s.body]);
+    sum += 0.5 * s.fraction * u * u;
+  }
+  return impl_->impulse_scale * sum;
+}
+
+Eigen::Vector3d CoupledSystem::stickingMomentum(const std::vector<Vector6d>& twists) const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const StickingLiquid& s : impl_->sticking) {
+    sum[s.axis] += s.fraction * velocityRow(s.axis, s.position, (*impl_->bodies)[s.body].p_WBcm).dot(twists[s.body]);
+  }
+  return impl_->impulse_scale * sum;
+}
+
 int CoupledSystem::coupledBodies() const {
   std::vector<char> coupled(impl_->free_index.size(), 0);
   for (const BodyRow& row : impl_->rows.divergence) coupled[row.body] = 1;

@@ -9,7 +9,10 @@
 namespace monolith {
 namespace {
 
-constexpr double kLeastLiquid = 1e-3;  // of the segment between two cell centres at the free surface
+// A cell whose centre is less than this below the surface counts as dry: no face with a tiny part of liquid.
+constexpr double kLeastLiquid = 1e-3;  // cell widths
+
+bool isWet(double distance) { return distance < -kLeastLiquid; }
 constexpr double kLeastSliver = 0.05;
 constexpr double kDistanceCap = 2.5;   // cell widths; the fine distances are right at least up to here
 
@@ -99,12 +102,12 @@ class RowBuilder {
 }  // namespace
 
 double liquidPart(double distance_low, double distance_high) {
-  const bool low = distance_low < 0.0;
-  const bool high = distance_high < 0.0;
+  const bool low = isWet(distance_low);
+  const bool high = isWet(distance_high);
   if (low && high) return 1.0;
   if (!low && !high) return 0.0;
   const double wet = low ? distance_low : distance_high;
-  const double dry = low ? distance_high : distance_low;
+  const double dry = std::max(0.0, low ? distance_high : distance_low);
   return std::clamp(wet / (wet - dry), kLeastLiquid, 1.0);
 }
 
@@ -139,7 +142,7 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
   forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
     if (j >= end[1] || k >= end[2]) return;
     for (auto c = row; c < row + end[0]; ++c) {
-      if (liquid[c] >= 0.0) continue;
+      if (!isWet(liquid[c])) continue;
       double sum = 0.0;
       for (int a = 0; a < 3; ++a) sum += out.open[a][c] + out.open[a][c + l.stride[a]];
       out.has_pressure[c] = sum > 0.0;

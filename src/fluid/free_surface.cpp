@@ -12,7 +12,7 @@ namespace monolith {
 namespace {
 
 constexpr double kFar = 1e3;               // cell widths
-constexpr double kTravelToRedistance = 0.2;  // cells
+constexpr double kTravelToRedistance = 1.0;  // cells
 constexpr double kLargestShift = 0.1;      // cells in one correction
 constexpr double kSampleBeyondSolid = 0.75;  // cells: outside, where the value is the liquid's own
 

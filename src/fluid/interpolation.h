@@ -18,8 +18,8 @@ inline Eigen::Vector3d nodeOffset(int face_axis) {
 // Trilinear; positions are clamped to the tank along axes with walls, wrapped along periodic ones.
 double sampleLinear(const Lattice& lattice, const std::vector<double>& field, const Eigen::Vector3d& node_position);
 
-// Tricubic (Lagrange, fourth order), linear where the stencil would leave the field. `limited`: kept between the
-// eight surrounding values, so that no new extremum arises.
+// Tricubic (Lagrange, fourth order), linear where the stencil would leave the field. `limited`: kept within
+// the range of its stencil but for the overshoot of a smooth extremum, so that jumps do not ring.
 double sampleCubic(const Lattice& lattice, const std::vector<double>& field, const Eigen::Vector3d& node_position,
                    bool limited);
 

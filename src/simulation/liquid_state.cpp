@@ -7,10 +7,11 @@
 
 namespace monolith {
 
-MacGrid makeGrid(const TankDescription& tank) {
+MacGrid makeGrid(const TankDescription& tank, const LiquidDescription& liquid) {
+  const bool dry = liquid.fill_level <= 0.0 && liquid.boxes.empty();
   MacGrid grid;
   std::array<int, 3> n;
-  for (int a = 0; a < 3; ++a) n[a] = static_cast<int>(std::lround(tank.size[a] / tank.cell_width));
+  for (int a = 0; a < 3; ++a) n[a] = dry ? 1 : static_cast<int>(std::lround(tank.size[a] / tank.cell_width));
   grid.lattice = Lattice(n, {tank.periodic[0], tank.periodic[1], tank.periodic[2]});
   grid.h = tank.cell_width;
   grid.origin = tank.origin;

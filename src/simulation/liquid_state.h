@@ -10,7 +10,8 @@
 
 namespace monolith {
 
-MacGrid makeGrid(const TankDescription& tank);
+// The tank's grid; a tank without liquid needs none, and one cell stands for it.
+MacGrid makeGrid(const TankDescription& tank, const LiquidDescription& liquid);
 
 // Marks the faces whose velocity is known, gives faces inside bodies the bodies' velocity where it sticks to them, and
 // spreads the rest into solids and air.

@@ -46,7 +46,7 @@ struct State {
 
 struct Simulation::Impl {
   explicit Impl(const Scene& s)
-      : scene(s), grid(makeGrid(s.tank)), walls(makeWalls(s.tank)), sampler(grid), system(grid) {}
+      : scene(s), grid(makeGrid(s.tank, s.liquid)), walls(makeWalls(s.tank)), sampler(grid), system(grid) {}
 
   static TankWalls makeWalls(const TankDescription& tank) {
     TankWalls walls;
@@ -75,6 +75,9 @@ struct Simulation::Impl {
   std::unique_ptr<ContactDetector> detector;
   std::vector<Wrench> wrenches;
   double target_volume = 0.0;   // m^3
+  // Of the liquid that stuck to the bodies in the last solve, at their poses then.
+  double sticking_energy = 0.0;  // J
+  Eigen::Vector3d sticking_momentum = Eigen::Vector3d::Zero();
   State state;
   StepReport report;
 };
@@ -103,7 +106,6 @@ void Simulation::Impl::initialise() {
 }
 
 void Simulation::Impl::prepareGeometry() {
-  if (!hasLiquid()) return;
   sampler.sample(state.bodies, solids);
   state.surface[0].extendIntoSolids(solids.cell_distance);
 }
@@ -173,6 +175,8 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
     return false;
   }
   state.started = true;
+  sticking_energy = system.stickingEnergy(state.coupled.twists);
+  sticking_momentum = system.stickingMomentum(state.coupled.twists);
   step.model.liquid = hasLiquid();
   step.model.viscosity = hasLiquid() && noSlip();
   step.model.free_surface = hasLiquid() && !state.surface[0].full();
@@ -208,9 +212,9 @@ void Simulation::Impl::measure(StepReport& step) const {
     step.liquid_volume = state.surface[0].volume(solids.cell_fluid);
     const LiquidBudget budget = liquidBudget(grid, system.coefficients(), state.coupled.velocity, state.surface[0],
                                              solids.cell_fluid, scene.liquid.density, scene.gravity);
-    step.kinetic_energy = budget.kinetic;
+    step.kinetic_energy = budget.kinetic + sticking_energy;
     step.potential_energy = budget.potential;
-    step.liquid_momentum = budget.momentum;
+    step.liquid_momentum = budget.momentum + sticking_momentum;
   }
   for (const RigidBody& body : state.bodies) {
     if (body.motion != BodyMotion::kFree) continue;

@@ -1,0 +1,64 @@
+#pragma once
+// Small scenes for the tests of the coupling: a tank with a few turned bodies, drawn from a seed.
+
+#include <random>
+
+#include "coupling/solid_fractions.h"
+#include "coupling/sticking_liquid.h"
+#include "coupling/stokes_coefficients.h"
+#include "rigid/integration.h"
+
+namespace monolith {
+
+struct CouplingScene {
+  MacGrid grid;
+  std::vector<RigidBody> bodies;
+  SolidFractions solids;
+  std::vector<StickingLiquid> sticking;
+  std::vector<double> liquid;
+  StaggeredCoefficients<double> coefficients;
+  BodyRows rows;
+  double viscous_number = 0.0;
+
+  // seed decides sizes, poses, fill and periodicity; bodies may touch, overlap and stick out of the liquid.
+  CouplingScene(unsigned seed, double number) : viscous_number(number) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    grid.lattice = Lattice({10, 9, 12}, {seed % 3 == 1, false, seed % 5 == 2});
+    grid.h = 0.1;
+    grid.origin = Eigen::Vector3d(-0.3, 0.2, 0.1);
+    for (int b = 0; b < 3; ++b) {
+      BodyDescription body;
+      body.name = "body" + std::to_string(b);
+      Shape shape;
+      shape.kind = static_cast<Shape::Kind>(b);
+      shape.box_size = 0.2 * Eigen::Vector3d(1.0 + unit(random), 1.0 + unit(random), 1.0 + unit(random));
+      shape.radius = 0.12 + 0.08 * unit(random);
+      shape.length = 0.3;
+      shape.name = body.name;
+      body.shapes = {shape};
+      body.X_WB.translation() =
+          grid.origin + Eigen::Vector3d(0.3 + 0.4 * unit(random), 0.3 + 0.3 * unit(random), 0.3 + 0.6 * unit(random));
+      body.X_WB.linear() = Eigen::Quaterniond(unit(random), unit(random) - 0.5, unit(random) - 0.5, unit(random))
+                               .normalized()
+                               .toRotationMatrix();
+      bodies.push_back(makeRigidBody(body, 0.05));
+    }
+    SolidSampler(grid).sample(bodies, solids);
+    if (number >= 0.05) attachStickingLiquid(grid, solids, sticking);
+    const Lattice& l = grid.lattice;
+    const double fill = seed % 2 ? 100.0 : 5.0 + 4.0 * unit(random);
+    liquid.assign(l.size, 0.0);
+    for (int k = 0; k < l.n[2]; ++k) {
+      for (int j = 0; j < l.n[1]; ++j) {
+        for (int i = 0; i < l.n[0]; ++i) liquid[l.index(i, j, k)] = k + 0.5 + 0.15 * i - fill;
+      }
+    }
+    extendIntoHalo(l, liquid);
+    const StokesGeometry geometry{&solids.fluid, &solids.distance, &liquid};
+    buildCoefficients(l, geometry, number, coefficients);
+    buildBodyRows(grid, solids, bodies, geometry, coefficients, rows);
+  }
+};
+
+}  // namespace monolith

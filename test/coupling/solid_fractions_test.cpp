@@ -1,0 +1,89 @@
+#include <gtest/gtest.h>
+
+#include "coupling_scene.h"
+
+namespace monolith {
+namespace {
+
+// Sum over the bodies of their fraction of a face, periodic images included.
+double bodyFraction(const CouplingScene& scene, int axis, const std::array<int, 3>& cell) {
+  const Lattice& l = scene.grid.lattice;
+  double sum = 0.0;
+  for (const BodyFractions& f : scene.solids.bodies) {
+    for (int k = 0; k < f.count[2]; ++k) {
+      for (int j = 0; j < f.count[1]; ++j) {
+        for (int i = 0; i < f.count[0]; ++i) {
+          const int at[3] = {f.low[0] + i, f.low[1] + j, f.low[2] + k};
+          bool same = true;
+          for (int a = 0; a < 3; ++a) {
+            const int wrapped = l.periodic[a] ? ((at[a] % l.n[a]) + l.n[a]) % l.n[a] : at[a];
+            same = same && wrapped == cell[a];
+          }
+          if (same) sum += f.face[axis][f.local(i, j, k)];
+        }
+      }
+    }
+  }
+  return sum;
+}
+
+TEST(SolidFractions, EveryFaceSumsToOneAlsoWhereBodiesOverlap) {
+  for (const double number : {0.0, 1.0}) {  // without and with sticking liquid
+    for (unsigned seed = 0; seed < 6; ++seed) {
+      const CouplingScene scene(seed, number);
+      const Lattice& l = scene.grid.lattice;
+      int cut = 0;
+      for (int a = 0; a < 3; ++a) {
+        for (int k = 0; k < l.faceEnd(2) - (a == 2 || l.periodic[2] ? 0 : 1); ++k) {
+          for (int j = 0; j < l.faceEnd(1) - (a == 1 || l.periodic[1] ? 0 : 1); ++j) {
+            for (int i = 0; i < l.faceEnd(0) - (a == 0 || l.periodic[0] ? 0 : 1); ++i) {
+              const std::array<int, 3> cell = {i, j, k};
+              const bool wall = !l.periodic[a] && (cell[a] == 0 || cell[a] == l.n[a]);
+              const double bodies = bodyFraction(scene, a, cell);
+              const double fluid = scene.solids.fluid[a][l.index(i, j, k)];
+              cut += bodies > 0.0 && fluid > 0.0;
+              if (wall) {
+                EXPECT_EQ(fluid, 0.0);
+                EXPECT_EQ(bodies, 0.0);
+              } else if (number == 0.0) {
+                EXPECT_NEAR(fluid + bodies, 1.0, 1e-12);
+              } else {
+                // What sticks to a wall belongs to the wall.
+                EXPECT_LE(fluid + bodies, 1.0 + 1e-12);
+              }
+              EXPECT_GE(fluid, 0.0);
+            }
+          }
+        }
+      }
+      EXPECT_GT(cut, 50);
+    }
+  }
+}
+
+TEST(SolidFractions, VolumeOfASphereIsItsFractionsWhereverItLies) {
+  MacGrid grid;
+  grid.lattice = Lattice({16, 16, 16}, {false, false, false});
+  grid.h = 0.1;
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> unit(0.0, 0.1);
+  for (int trial = 0; trial < 5; ++trial) {
+    BodyDescription body;
+    Shape shape;
+    shape.kind = Shape::Kind::kSphere;
+    shape.radius = 0.4;
+    body.shapes = {shape};
+    body.X_WB.translation() = Eigen::Vector3d(0.8 + unit(random), 0.8 + unit(random), 0.8 + unit(random));
+    const std::vector<RigidBody> bodies = {makeRigidBody(body, 0.05)};
+    SolidFractions solids;
+    SolidSampler(grid).sample(bodies, solids);
+    for (int a = 0; a < 3; ++a) {
+      double sum = 0.0;
+      for (const double part : solids.bodies[0].face[a]) sum += part;
+      EXPECT_NEAR(sum * grid.cellVolume() / volume(shape), 1.0, 3e-3);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace monolith

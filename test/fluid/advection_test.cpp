@@ -1,0 +1,76 @@
+#include "fluid/advection.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "fluid/interpolation.h"
+
+namespace monolith {
+namespace {
+
+TEST(Interpolation, CubicReproducesCubicsAndNodes) {
+  const Lattice l({8, 8, 8}, {false, false, false});
+  std::vector<double> field(l.size);
+  const auto f = [](double x, double y, double z) { return 1.0 + x - y * y + 0.1 * x * x * x + 0.2 * x * y * z; };
+  for (int k = -1; k < 10; ++k) {
+    for (int j = -1; j < 10; ++j) {
+      for (int i = -1; i < 10; ++i) field[l.index(i, j, k)] = f(i, j, k);
+    }
+  }
+  EXPECT_NEAR(sampleCubic(l, field, {3.3, 2.7, 4.1}, false), f(3.3, 2.7, 4.1), 1e-10);
+  EXPECT_EQ(sampleCubic(l, field, {3.0, 2.0, 4.0}, false), field[l.index(3, 2, 4)]);
+  EXPECT_EQ(sampleLinear(l, field, {3.0, 2.0, 4.0}), field[l.index(3, 2, 4)]);
+}
+
+// Error after a periodic shear wave has been carried once around.
+double errorAfterARound(int n) {
+  MacGrid grid;
+  grid.lattice = Lattice({n, 4, 4}, {true, true, true});
+  grid.h = 1.0 / n;
+  const Lattice& l = grid.lattice;
+  FaceField<double> u, moved;
+  std::array<std::vector<std::uint8_t>, 3> known;
+  for (int a = 0; a < 3; ++a) {
+    u[a].assign(l.size, a == 0 ? 1.0 : 0.0);
+    known[a].assign(l.size, 1);
+  }
+  const auto wave = [&](int i) { return 0.1 * std::sin(2.0 * M_PI * (i + 0.5) / n); };
+  for (int k = 0; k < 4; ++k) {
+    for (int j = 0; j < 4; ++j) {
+      for (int i = 0; i < n; ++i) u[1][l.index(i, j, k)] = wave(i);
+    }
+  }
+  fillHalo(l, u[1]);
+  const int steps = n * 2;
+  for (int s = 0; s < steps; ++s) {
+    advectVelocity(grid, u, known, 1.0 / steps, moved);
+    u = moved;
+    for (auto& field : u) fillHalo(l, field);
+  }
+  double error = 0.0;
+  for (int i = 0; i < n; ++i) error = std::max(error, std::abs(u[1][l.index(i, 1, 1)] - wave(i)));
+  return error;
+}
+
+TEST(Advection, IsOfSecondOrderOrBetter) {
+  const double coarse = errorAfterARound(16);
+  const double fine = errorAfterARound(32);
+  EXPECT_LT(fine, 1e-3);
+  EXPECT_GT(std::log2(coarse / fine), 1.9);
+}
+
+TEST(Advection, AtRestNothingChangesABit) {
+  MacGrid grid;
+  grid.lattice = Lattice({6, 6, 6}, {false, false, false});
+  const Lattice& l = grid.lattice;
+  FaceField<double> zero;
+  for (auto& field : zero) field.assign(l.size, 0.0);
+  std::vector<double> field(l.size), moved;
+  for (std::size_t c = 0; c < l.size; ++c) field[c] = std::sin(0.1 * static_cast<double>(c));
+  advectCells(grid, zero, field, 0.1, moved);
+  EXPECT_EQ(field, moved);
+}
+
+}  // namespace
+}  // namespace monolith

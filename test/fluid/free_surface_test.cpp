@@ -1,0 +1,92 @@
+#include "fluid/free_surface.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace monolith {
+namespace {
+
+MacGrid cube(int n, double h) {
+  MacGrid grid;
+  grid.lattice = Lattice({n, n, n}, {false, false, false});
+  grid.h = h;
+  return grid;
+}
+
+TEST(FreeSurface, VolumeOfAFillIsExact) {
+  const MacGrid grid = cube(12, 0.05);
+  const std::vector<double> open(grid.lattice.size, 1.0);
+  for (const double level : {0.1, 0.2345, 0.299999, 0.31}) {
+    const FreeSurface surface(grid, level, {});
+    EXPECT_NEAR(surface.volume(open), level * 0.36, 1e-9);
+    EXPECT_FALSE(surface.full());
+  }
+  EXPECT_TRUE(FreeSurface(grid, 0.6, {}).full());
+  EXPECT_TRUE(FreeSurface(grid, 0.0, {}).empty());
+}
+
+TEST(FreeSurface, CorrectionReachesTheTargetAndSaysByHowMuch) {
+  const MacGrid grid = cube(12, 0.05);
+  const std::vector<double> open(grid.lattice.size, 1.0);
+  FreeSurface surface(grid, 0.25, {});
+  const double added = surface.correctVolume(0.0901, open);
+  EXPECT_NEAR(surface.volume(open), 0.0901, 1e-9);
+  EXPECT_NEAR(added, 0.0001, 1e-9);
+}
+
+TEST(FreeSurface, ADropCarriedAcrossTheTankKeepsItsPlaceAndSize) {
+  const int n = 32;
+  const MacGrid grid = cube(n, 1.0 / n);
+  const Lattice& l = grid.lattice;
+  const std::vector<double> open(l.size, 1.0);
+  FreeSurface surface(grid, 0.0, {Eigen::AlignedBox3d(Eigen::Vector3d(0.2, 0.3, 0.3), Eigen::Vector3d(0.5, 0.7, 0.7))});
+  const double before = surface.volume(open);
+  FaceField<double> velocity;
+  for (int a = 0; a < 3; ++a) velocity[a].assign(l.size, a == 0 ? 0.5 : 0.0);
+  for (int step = 0; step < 20; ++step) surface.advect(velocity, 0.03, 0.5);  // by 0.3
+  EXPECT_NEAR(surface.volume(open) / before, 1.0, 0.05);
+  double x = 0.0, mass = 0.0;
+  for (int k = 0; k < n; ++k) {
+    for (int j = 0; j < n; ++j) {
+      for (int i = 0; i < n; ++i) {
+        if (surface.distance()[l.index(i, j, k)] >= 0.0) continue;
+        x += grid.cellCenter(i, j, k)[0];
+        mass += 1.0;
+      }
+    }
+  }
+  EXPECT_NEAR(x / mass, 0.65, 0.3 * grid.h);
+}
+
+TEST(FreeSurface, StaysADistanceWhileItMoves) {
+  const int n = 24;
+  const MacGrid grid = cube(n, 1.0 / n);
+  const Lattice& l = grid.lattice;
+  FreeSurface surface(grid, 0.5, {});
+  // Shear that tilts the surface.
+  FaceField<double> velocity;
+  for (auto& field : velocity) field.assign(l.size, 0.0);
+  for (int k = -1; k < n + 2; ++k) {
+    for (int j = -1; j < n + 2; ++j) {
+      for (int i = -1; i < n + 2; ++i) velocity[2][l.index(i, j, k)] = (i + 0.5) / n - 0.5;
+    }
+  }
+  for (int step = 0; step < 10; ++step) surface.advect(velocity, 0.05, 0.5);
+  int looked = 0;
+  for (int k = 2; k < n - 2; ++k) {
+    for (int i = 3; i < n - 3; ++i) {
+      const auto c = l.index(i, n / 2, k);
+      const double d = surface.distance()[c];
+      if (std::abs(d) > 2.0) continue;
+      // The plane z = 0.5 + 0.5 (x - 0.5), in cells.
+      const double exact = (k + 0.5 - 0.5 * n - 0.5 * (i + 0.5 - 0.5 * n)) / std::sqrt(1.25);
+      EXPECT_NEAR(d, exact, 0.1);
+      ++looked;
+    }
+  }
+  EXPECT_GT(looked, 30);
+}
+
+}  // namespace
+}  // namespace monolith

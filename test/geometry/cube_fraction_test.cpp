@@ -1,0 +1,57 @@
+#include "geometry/cube_fraction.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace monolith {
+namespace {
+
+// Part of the unit cube below the plane, by counting points of a fine grid.
+double counted(double distance, const Eigen::Vector3d& normal) {
+  constexpr int kSide = 60;
+  int inside = 0;
+  for (int k = 0; k < kSide; ++k) {
+    for (int j = 0; j < kSide; ++j) {
+      for (int i = 0; i < kSide; ++i) {
+        const Eigen::Vector3d x = (Eigen::Vector3d(i, j, k) + Eigen::Vector3d::Constant(0.5)) / kSide -
+                                  Eigen::Vector3d::Constant(0.5);
+        inside += distance + normal.dot(x) < 0.0;
+      }
+    }
+  }
+  return inside / std::pow(kSide, 3);
+}
+
+TEST(CubeFraction, AgreesWithCountingForRandomPlanes) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> gauss;
+  std::uniform_real_distribution<double> offset(-0.9, 0.9);
+  for (int trial = 0; trial < 100; ++trial) {
+    Eigen::Vector3d normal(gauss(random), gauss(random), gauss(random));
+    if (trial % 4 == 1) normal[trial % 3] = 0.0;
+    if (trial % 4 == 2) normal = Eigen::Vector3d::Unit(trial % 3);
+    normal.normalize();
+    const double distance = offset(random);
+    EXPECT_NEAR(insideFraction(distance, normal, 1.0), counted(distance, normal), 0.012) << normal.transpose();
+  }
+}
+
+TEST(CubeFraction, BothSidesOfAPlaneFillTheCube) {
+  std::mt19937 random(4);
+  std::normal_distribution<double> gauss;
+  for (int trial = 0; trial < 200; ++trial) {
+    const Eigen::Vector3d normal = Eigen::Vector3d(gauss(random), gauss(random), gauss(random)).normalized();
+    const double distance = 0.01 * gauss(random);
+    EXPECT_NEAR(insideFraction(distance, normal, 0.02) + insideFraction(-distance, -normal, 0.02), 1.0, 1e-12);
+  }
+}
+
+TEST(CubeFraction, FarPlanesAreAllOrNothing) {
+  EXPECT_EQ(insideFraction(2.0, Eigen::Vector3d::UnitX(), 1.0), 0.0);
+  EXPECT_EQ(insideFraction(-2.0, Eigen::Vector3d::UnitX(), 1.0), 1.0);
+  EXPECT_EQ(insideFraction(-1e-3, Eigen::Vector3d::Zero(), 1.0), 1.0);
+}
+
+}  // namespace
+}  // namespace monolith
