@@ -69,7 +69,7 @@ bool boxDraught() {
     scene.time_step = 0.02;
     scene.liquid.fill_level = 0.12;
     const Eigen::Vector3d size(0.1, 0.1, 0.06);
-    const Eigen::Vector3d start(0.1237, 0.1181, 0.142);
+    const Eigen::Vector3d start(0.1237, 0.1181, 0.155);
     scene.bodies.push_back(boxBody("box", size, density, start));
     Simulation simulation(scene);
     while (simulation.time() < 12.0) {

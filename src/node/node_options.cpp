@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <vector>
 
 #include "scene/yaml_map.h"
 
@@ -71,13 +72,14 @@ class ParameterReader {
         if (std::count(known_.begin(), known_.end(), entry.first) || isRobotDescription(entry.first, entry.second)) {
           continue;
         }
-        add("~" + entry.first + ": unknown parameter: nearest known one is ~" + nearestWord(entry.first, known_));
+        add("~" + entry.first + ": unknown parameter: expected another, the nearest is ~" + nearestWord(entry.first, known_));
       }
     }
     if (!errors_.empty()) throw OptionsError(errors_);
   }
 
-  const std::vector<std::string>& known() const { return known_; }
+  // A parameter of another's, here of diagnostic_updater.
+  void ignore(const std::string& name) { known_.push_back(name); }
 
  private:
   bool takes(const std::string& name) {
@@ -97,7 +99,10 @@ class ParameterReader {
   std::string errors_;
 };
 
-NodeOptions readAll(ParameterReader& reader) {
+}  // namespace
+
+NodeOptions readNodeOptions(const XmlRpcValue& parameters) {
+  ParameterReader reader(parameters);
   NodeOptions options;
   reader.read("scene", options.scene);
   reader.read("paced", options.paced);
@@ -111,21 +116,7 @@ NodeOptions readAll(ParameterReader& reader) {
   reader.read("wrench_timeout", options.wrench_timeout, false);
   reader.read("wait_for_subscribers", options.wait_for_subscribers);
   reader.read("progress", options.progress);
-  reader.read("result_file", options.result_file);
-  return options;
-}
-
-}  // namespace
-
-std::vector<std::string> nodeOptionNames() {
-  ParameterReader reader{XmlRpcValue()};
-  readAll(reader);
-  return reader.known();
-}
-
-NodeOptions readNodeOptions(const XmlRpcValue& parameters) {
-  ParameterReader reader(parameters);
-  const NodeOptions options = readAll(reader);
+  reader.ignore("diagnostic_period");
   reader.require(!options.scene.empty(), "scene", "the path of a scene file or the name of a shipped scene");
   reader.require(!options.world_frame.empty() && options.world_frame[0] != '/', "world_frame",
                  "a tf frame without a leading slash");

@@ -5,7 +5,6 @@
 
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 namespace monolith {
 
@@ -16,13 +15,12 @@ struct NodeOptions {
   double duration = 0.0;               // s, simulated; 0: endless
   double state_rate = 50.0;            // Hz, simulated, as all rates
   double surface_rate = 10.0;
-  double statistics_rate = 50.0;
-  double marker_rate = 1.0;
+  double statistics_rate = 10.0;
+  double marker_rate = 25.0;
   std::string world_frame = "world";
   double wrench_timeout = 0.5;         // s, simulated
   bool wait_for_subscribers = false;
   bool progress = false;
-  std::string result_file;             // empty: none
 };
 
 // what() has a line for each violation: parameter, value and what was expected.
@@ -30,9 +28,6 @@ class OptionsError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
-
-// Names of all parameters, in the order of NodeOptions.
-std::vector<std::string> nodeOptionNames();
 
 // From the node's private namespace as a whole. Throws OptionsError: unknown parameters (with the nearest known
 // name), wrong types, values out of range. Entries named *robot_description are URDF texts and left alone.

@@ -10,6 +10,8 @@ class ProgressBar {
   explicit ProgressBar(double duration);  // s, simulated
   // Ends the bar's line.
   ~ProgressBar();
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
 
   void show(double elapsed, double real_time_factor);
 

@@ -1,107 +1,172 @@
 #include "node/state_publisher.h"
 
+#include <monolith_tank/BodyStates.h>
+#include <nav_msgs/Odometry.h>
 #include <rosgraph_msgs/Clock.h>
+#include <tf2_msgs/TFMessage.h>
 #include <visualization_msgs/MarkerArray.h>
 
-#include <algorithm>
-
-#include "node/markers.h"
 #include "node/message_conversion.h"
+#include "node/point_cloud.h"
+#include "node/reference_frames.h"
+#include "node/tank_markers.h"
 
 namespace monolith {
 namespace {
 
-constexpr int kQueue = 100;        // small messages: none is lost to a subscriber that is briefly busy
-constexpr int kSurfaceQueue = 10;
-
-std::vector<geometry_msgs::TransformStamped> linkTransforms(const Scene& scene) {
-  std::vector<geometry_msgs::TransformStamped> transforms;
-  for (const BodyDescription& body : scene.bodies) {
-    for (std::size_t i = 1; i < body.links.size(); ++i) {
-      geometry_msgs::TransformStamped transform;
-      transform.header.frame_id = body.name;
-      transform.child_frame_id = body.name + "/" + body.links[i].name;
-      transform.transform = toTransform(body.links[i].X_BL);
-      transforms.push_back(transform);
-    }
-  }
-  return transforms;
-}
+// Deep enough that a reader that is slow for a moment misses nothing of an unpaced run.
+constexpr int kQueueSize = 1000;
+constexpr int kLargeQueueSize = 100;
 
 }  // namespace
 
-StatePublisher::StatePublisher(ros::NodeHandle node, ros::NodeHandle private_node, const NodeOptions& options,
-                               const SimulationRunner& runner)
-    : runner_(runner),
-      owns_clock_(node.param("/use_sim_time", false)),
-      state_gate_(options.state_rate),
-      surface_gate_(options.surface_rate),
-      statistics_gate_(options.statistics_rate),
-      marker_gate_(options.marker_rate) {
-  // Latched: who comes while the simulation is paused has a valid time at once.
-  if (owns_clock_) clock_ = node.advertise<rosgraph_msgs::Clock>("/clock", kQueue, true);
-  body_states_ = private_node.advertise<monolith_tank::BodyStates>("body_states", kQueue);
-  surface_ = private_node.advertise<sensor_msgs::PointCloud2>("surface", kSurfaceQueue);
-  statistics_ = private_node.advertise<monolith_tank::Statistics>("statistics", kQueue);
-  markers_ = private_node.advertise<visualization_msgs::MarkerArray>("markers", 1, true);
-  for (const BodyDescription& body : runner.scene().bodies) {
-    odometry_.push_back(private_node.advertise<nav_msgs::Odometry>(body.name + "/odom", kQueue));
-    private_node.setParam(body.name + "/robot_description", body.urdf_xml);
+StatePublisher::StatePublisher(ros::NodeHandle& global, ros::NodeHandle& local, const NodeOptions& options,
+                               const Simulation& simulation)
+    : local_(local),
+      simulation_(simulation),
+      world_frame_(options.world_frame),
+      owns_clock_(ros::Time::isSimTime()),
+      state_gate_(options.state_rate, simulation.scene().time_step),
+      surface_gate_(options.surface_rate, simulation.scene().time_step),
+      statistics_gate_(options.statistics_rate, simulation.scene().time_step),
+      marker_gate_(options.marker_rate, simulation.scene().time_step) {
+  if (owns_clock_) clock_ = global.advertise<rosgraph_msgs::Clock>("/clock", kQueueSize);
+  tf_ = global.advertise<tf2_msgs::TFMessage>("/tf", kQueueSize);
+  tf_static_ = global.advertise<tf2_msgs::TFMessage>("/tf_static", 1, true);
+  // Latched: whoever comes while the simulation is paused sees where it stands.
+  states_ = local.advertise<monolith_tank::BodyStates>("body_states", kQueueSize, true);
+  surface_ = local.advertise<sensor_msgs::PointCloud2>("surface", kLargeQueueSize, true);
+  statistics_ = local.advertise<monolith_tank::Statistics>("statistics", kQueueSize, true);
+  markers_ = local.advertise<visualization_msgs::MarkerArray>("markers", kLargeQueueSize, true);
+  tank_ = local.advertise<visualization_msgs::MarkerArray>("tank", 1, true);
+  const std::vector<BodyDescription>& bodies = simulation.scene().bodies;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    odometry_.push_back(local.advertise<nav_msgs::Odometry>(bodies[b].name + "/odom", kQueueSize, true));
+    std::vector<std::string> warnings;
+    body_markers_.push_back(makeBodyMarkers(bodies[b], static_cast<int>(b), warnings));
+    for (const std::string& warning : warnings) ROS_WARN_STREAM(warning);
   }
-  const auto links = linkTransforms(runner.scene());
-  if (!links.empty()) static_transforms_.sendTransform(links);
 }
+
+ros::Time StatePublisher::stamp() const { return ros::Time(simulation_.time() + simulation_.scene().time_step); }
 
 std_msgs::Header StatePublisher::header() const {
   std_msgs::Header header;
-  header.stamp = runner_.stamp();
-  header.frame_id = runner_.frames().worldFrame();
+  header.stamp = stamp();
+  header.frame_id = world_frame_;
   return header;
 }
 
-void StatePublisher::publish(bool report, double real_time_factor) {
-  const double time = runner_.clock();
-  if (owns_clock_) {
-    rosgraph_msgs::Clock clock;
-    clock.clock = runner_.stamp();
-    ros::Time::setNow(clock.clock);
-    clock_.publish(clock);
+void StatePublisher::publishConstant() {
+  tank_.publish(makeTankMarkers(simulation_.scene().tank, world_frame_));
+  tf2_msgs::TFMessage frames;
+  for (const BodyDescription& body : simulation_.scene().bodies) {
+    local_.setParam(body.name + "/robot_description", body.urdf_xml);
+    for (const LinkFrame& link : body.links) {
+      geometry_msgs::TransformStamped transform;
+      transform.header.stamp = stamp();
+      transform.header.frame_id = body.name;
+      transform.child_frame_id = ReferenceFrames::linkFrame(body.name, link.name);
+      transform.transform = toTransform(link.X_BL);
+      frames.transforms.push_back(transform);
+    }
   }
-  if (state_gate_.due(time)) publishStates();
-  if (surface_gate_.due(time) && surface_.getNumSubscribers() > 0) {
-    surface_.publish(toPointCloud(header(), runner_.simulation().surfacePoints()));
-  }
-  if (report && statistics_gate_.due(time)) publishStatistics(real_time_factor);
-  if (marker_gate_.due(time)) {
-    // Stamp 0: where tf has the frames last, also while paused.
-    markers_.publish(sceneMarkers(runner_.scene(), runner_.frames().worldFrame()));
-  }
+  tf_static_.publish(frames);
 }
 
-void StatePublisher::publishStates() {
-  const std::vector<BodyState> states = runner_.simulation().bodyStates();
-  const std::vector<BodyDescription>& bodies = runner_.scene().bodies;
-  std::vector<geometry_msgs::TransformStamped> transforms;
-  body_states_.publish(toBodyStates(header(), bodies, states));
+void StatePublisher::publish(const StepReport& report, double real_time_factor, bool all) {
+  publishClock();
+  const std::vector<BodyState> states = simulation_.bodyStates();
+  if (all || state_gate_.isDue(report.step)) {
+    publishTransforms(states);
+    publishStates(states);
+    publishOdometry(states);
+  }
+  if (all || marker_gate_.isDue(report.step)) publishMarkers(states);
+  if (all || surface_gate_.isDue(report.step)) publishSurface();
+  if (all || statistics_gate_.isDue(report.step)) publishStatistics(report, real_time_factor);
+}
+
+void StatePublisher::publishClock() {
+  if (!owns_clock_) return;
+  rosgraph_msgs::Clock message;
+  message.clock = stamp();
+  clock_.publish(message);
+}
+
+void StatePublisher::publishTransforms(const std::vector<BodyState>& states) {
+  // tf ignores a second pose of the same time, with a warning in every listener.
+  if (stamp() == last_transform_stamp_) return;
+  last_transform_stamp_ = stamp();
+  tf2_msgs::TFMessage message;
   for (std::size_t b = 0; b < states.size(); ++b) {
-    odometry_[b].publish(toOdometry(header(), bodies[b].name, states[b]));
     geometry_msgs::TransformStamped transform;
     transform.header = header();
-    transform.child_frame_id = bodies[b].name;
+    transform.child_frame_id = simulation_.scene().bodies[b].name;
     transform.transform = toTransform(states[b].X_WB);
-    transforms.push_back(transform);
+    message.transforms.push_back(transform);
   }
-  transforms_.sendTransform(transforms);
+  if (!message.transforms.empty()) tf_.publish(message);
 }
 
-void StatePublisher::publishStatistics(double real_time_factor) {
-  statistics_.publish(toStatistics(header(), runner_.simulation().report(), real_time_factor));
+void StatePublisher::publishStates(const std::vector<BodyState>& states) {
+  monolith_tank::BodyStates message;
+  message.header = header();
+  for (std::size_t b = 0; b < states.size(); ++b) {
+    message.names.push_back(simulation_.scene().bodies[b].name);
+    message.poses.push_back(toPose(states[b].X_WB));
+    message.twists.push_back(toTwist(states[b].velocity, states[b].angular_velocity));
+    message.liquid_wrenches.push_back(toWrench(states[b].liquid));
+    message.contact_wrenches.push_back(toWrench(states[b].contact));
+  }
+  states_.publish(message);
 }
 
-bool StatePublisher::hasSubscribers() const {
-  const auto heard = [](const ros::Publisher& publisher) { return publisher.getNumSubscribers() > 0; };
-  return heard(body_states_) && heard(surface_) && heard(statistics_) &&
-         std::all_of(odometry_.begin(), odometry_.end(), heard);
+void StatePublisher::publishOdometry(const std::vector<BodyState>& states) {
+  for (std::size_t b = 0; b < states.size(); ++b) {
+    nav_msgs::Odometry message;
+    message.header = header();
+    message.child_frame_id = simulation_.scene().bodies[b].name;
+    message.pose.pose = toPose(states[b].X_WB);
+    // nav_msgs/Odometry has its twist in the child frame.
+    const Eigen::Matrix3d R_BW = states[b].X_WB.linear().transpose();
+    message.twist.twist = toTwist(R_BW * states[b].velocity, R_BW * states[b].angular_velocity);
+    odometry_[b].publish(message);
+  }
+}
+
+void StatePublisher::publishMarkers(const std::vector<BodyState>& states) {
+  visualization_msgs::MarkerArray message;
+  for (std::size_t b = 0; b < states.size(); ++b) {
+    for (const BodyMarker& part : body_markers_[b]) {
+      message.markers.push_back(part.marker);
+      message.markers.back().header = header();
+      message.markers.back().pose = toPose(states[b].X_WB * part.X_BV);
+    }
+  }
+  markers_.publish(message);
+}
+
+void StatePublisher::publishSurface() {
+  sensor_msgs::PointCloud2 message = toPointCloud(simulation_.surfacePoints());
+  message.header = header();
+  surface_.publish(message);
+}
+
+void StatePublisher::publishStatistics(const StepReport& report, double real_time_factor) {
+  monolith_tank::Statistics message = toStatistics(report, real_time_factor);
+  message.header = header();
+  statistics_.publish(message);
+}
+
+std::vector<std::string> StatePublisher::topicsWithoutSubscriber() const {
+  std::vector<const ros::Publisher*> publishers = {&states_, &surface_, &statistics_};
+  for (const ros::Publisher& odometry : odometry_) publishers.push_back(&odometry);
+  std::vector<std::string> topics;
+  for (const ros::Publisher* publisher : publishers) {
+    if (publisher->getNumSubscribers() == 0) topics.push_back(publisher->getTopic());
+  }
+  return topics;
 }
 
 }  // namespace monolith

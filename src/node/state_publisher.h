@@ -1,46 +1,55 @@
 #pragma once
-// Everything that the node publishes about the simulation but diagnostics. Message headers carry simulated time.
+// Everything that the node tells about the simulation: /clock, tf, states, surface, statistics, markers, and the
+// bodies' URDF texts as parameters. Each topic at its own rate of simulated time.
 //
-// /clock (with use_sim_time), /tf, /tf_static; in the private namespace body_states, BODY/odom, surface, statistics,
-// markers; as parameters BODY/robot_description.
+// Stamps are the simulated time plus one time step: ROS takes time 0 for "no time yet", so the initial state has the
+// stamp of the first step.
 
-#include <ros/node_handle.h>
-#include <ros/publisher.h>
-#include <tf2_ros/static_transform_broadcaster.h>
-#include <tf2_ros/transform_broadcaster.h>
+#include <ros/ros.h>
 
+#include <string>
 #include <vector>
 
+#include "node/body_markers.h"
 #include "node/node_options.h"
-#include "node/rate_gate.h"
-#include "node/simulation_runner.h"
+#include "node/publish_gate.h"
+#include "simulation/simulation.h"
 
 namespace monolith {
 
 class StatePublisher {
  public:
-  StatePublisher(ros::NodeHandle node, ros::NodeHandle private_node, const NodeOptions& options,
-                 const SimulationRunner& runner);
+  StatePublisher(ros::NodeHandle& global, ros::NodeHandle& local, const NodeOptions& options,
+                 const Simulation& simulation);
 
-  // The clock always; the rest as its rate says. `report` false: the instant is not the end of a step.
-  void publish(bool report, double real_time_factor);
-  // Of a step that was not committed, whatever the rate.
-  void publishStatistics(double real_time_factor);
+  // What never changes: tank, link frames, URDF texts.
+  void publishConstant();
+  // After a step, or the initial state: what is due. `all` publishes regardless of the rates.
+  void publish(const StepReport& report, double real_time_factor, bool all);
+  void publishStatistics(const StepReport& report, double real_time_factor);
+  void publishClock();
 
-  // Someone listens to each topic of the bodies, surface and statistics.
-  bool hasSubscribers() const;
+  ros::Time stamp() const;
+  // Topics of the run's states that nobody listens to yet.
+  std::vector<std::string> topicsWithoutSubscriber() const;
 
  private:
+  void publishTransforms(const std::vector<BodyState>& states);
+  void publishStates(const std::vector<BodyState>& states);
+  void publishOdometry(const std::vector<BodyState>& states);
+  void publishMarkers(const std::vector<BodyState>& states);
+  void publishSurface();
   std_msgs::Header header() const;
-  void publishStates();
 
-  const SimulationRunner& runner_;
+  ros::NodeHandle local_;
+  const Simulation& simulation_;
+  std::string world_frame_;
   bool owns_clock_;
-  RateGate state_gate_, surface_gate_, statistics_gate_, marker_gate_;
-  ros::Publisher clock_, body_states_, surface_, statistics_, markers_;
+  PublishGate state_gate_, surface_gate_, statistics_gate_, marker_gate_;
+  ros::Publisher clock_, tf_, tf_static_, states_, surface_, statistics_, markers_, tank_;
   std::vector<ros::Publisher> odometry_;
-  tf2_ros::TransformBroadcaster transforms_;
-  tf2_ros::StaticTransformBroadcaster static_transforms_;
+  std::vector<std::vector<BodyMarker>> body_markers_;
+  ros::Time last_transform_stamp_;
 };
 
 }  // namespace monolith

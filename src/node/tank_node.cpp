@@ -5,7 +5,7 @@ namespace {
 
 constexpr double kIdleSec = 0.02;           // between looks at the queue while paused
 constexpr double kHeartbeatSec = 0.1;       // between repetitions of /clock while time stands still
-constexpr double kRecorderTimeoutSec = 20.0;
+constexpr double kSubscriberTimeoutSec = 20.0;
 constexpr double kLingerSec = 0.5;          // for the last messages to leave before the node does
 constexpr std::uint32_t kMostSteps = 100000;
 
@@ -21,7 +21,7 @@ TankNode::TankNode(ros::NodeHandle& global, ros::NodeHandle& local, ros::Callbac
       publisher_(global, local, options, control_.simulation()),
       diagnostics_(scene.name),
       listener_(transforms_, global, false),
-      wrench_input_(local, control_, options.wrench_timeout_sec, [this](const std::string& text) { refuse(text); }),
+      wrench_input_(local, control_, options.wrench_timeout, [this](const std::string& text) { refuse(text); }),
       body_services_(local, control_, options.world_frame,
                      {[this] { return publisher_.stamp(); }, [this](const std::string& text) { refuse(text); },
                       [this] { publisher_.publish(control_.simulation().report(), factor_.value(), true); }}) {
@@ -30,11 +30,11 @@ TankNode::TankNode(ros::NodeHandle& global, ros::NodeHandle& local, ros::Callbac
   servers_.push_back(local.advertiseService("reset_simulation", &TankNode::reset, this));
   servers_.push_back(local.advertiseService("step", &TankNode::stepPhysics, this));
   health_.paced = options.paced;
-  if (options.progress && options.duration_sec > 0.0) progress_ = std::make_unique<ProgressBar>(options.duration_sec);
+  if (options.progress && options.duration > 0.0) progress_ = std::make_unique<ProgressBar>(options.duration);
   const double possible = 1.0 / scene.time_step;
-  if (options.state_rate_hz > possible * (1.0 + 1e-9)) {
+  if (options.state_rate > possible * (1.0 + 1e-9)) {
     ROS_WARN("~state_rate: %g Hz asked, but the scene's time_step of %g s gives at most %g Hz: publishing after every step",
-             options.state_rate_hz, scene.time_step, possible);
+             options.state_rate, scene.time_step, possible);
   }
   if (!ros::Time::isSimTime()) {
     ROS_WARN("/use_sim_time is not set: messages have simulated time, but other nodes do not follow it");
@@ -42,7 +42,7 @@ TankNode::TankNode(ros::NodeHandle& global, ros::NodeHandle& local, ros::Callbac
 }
 
 void TankNode::run() {
-  if (options_.wait_for_recorder) waitForRecorder();
+  if (options_.wait_for_subscribers) waitForSubscribers();
   publisher_.publishConstant();
   publisher_.publish(control_.simulation().report(), 0.0, true);
   setPaused(options_.start_paused);
@@ -70,16 +70,16 @@ void TankNode::serve(double wall_sec) {
   queue_.callAvailable(ros::WallDuration(std::min(wall_sec, kHeartbeatSec)));
 }
 
-void TankNode::waitForRecorder() {
+void TankNode::waitForSubscribers() {
   const double start = wallNow();
   std::vector<std::string> missing = publisher_.topicsWithoutSubscriber();
-  while (ros::ok() && !missing.empty() && wallNow() - start < kRecorderTimeoutSec) {
+  while (ros::ok() && !missing.empty() && wallNow() - start < kSubscriberTimeoutSec) {
     serve(kIdleSec);
     missing = publisher_.topicsWithoutSubscriber();
   }
   for (const std::string& topic : missing) {
-    ROS_WARN("~wait_for_recorder: nobody subscribed to %s in %g s: expected a recorder, starting without",
-             topic.c_str(), kRecorderTimeoutSec);
+    ROS_WARN("~wait_for_subscribers: nobody subscribed to %s in %g s: expected a recorder or viewer, starting without",
+             topic.c_str(), kSubscriberTimeoutSec);
   }
 }
 
@@ -91,8 +91,8 @@ void TankNode::linger() {
 
 bool TankNode::isFinished() const {
   // Half a step of slack: the time is a sum of steps.
-  return options_.duration_sec > 0.0 &&
-         control_.simulation().time() >= options_.duration_sec - 0.5 * control_.simulation().scene().time_step;
+  return options_.duration > 0.0 &&
+         control_.simulation().time() >= options_.duration - 0.5 * control_.simulation().scene().time_step;
 }
 
 bool TankNode::advance() {
@@ -113,7 +113,7 @@ bool TankNode::advance() {
   factor_.add(wallNow(), control_.simulation().time());
   health_.real_time_factor = factor_.value();
   publisher_.publish(health_.report, health_.real_time_factor, isFinished());
-  if (progress_) progress_->update(wallNow(), control_.simulation().time(), health_.real_time_factor);
+  if (progress_) progress_->show(control_.simulation().time(), health_.real_time_factor);
   return true;
 }
 
@@ -144,6 +144,8 @@ bool TankNode::unpause(std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
 
 bool TankNode::reset(std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
   control_.reset();
+  // Or tf would take the initial state's frames for a repetition, until it sees /clock jump back.
+  transforms_.clear();
   health_.report = control_.simulation().report();
   health_.failed = false;
   health_.initial_volume = 0.0;

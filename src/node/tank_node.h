@@ -36,7 +36,7 @@ class TankNode {
   void run();
 
  private:
-  void waitForRecorder();
+  void waitForSubscribers();
   void linger();
   void serve(double wall_sec);
   bool isFinished() const;

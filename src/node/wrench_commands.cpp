@@ -1,72 +1,64 @@
 #include "node/wrench_commands.h"
 
-#include <algorithm>
-
-#include "node/message_conversion.h"
+#include "node/request_error.h"
 
 namespace monolith {
 namespace {
 
-using Eigen::Isometry3d;
-using Eigen::Vector3d;
-
-constexpr double kTimeSlack = 1e-7;  // s, below which two instants are the same
+constexpr double kTimeSlack = 1e-6;  // s, round-off of a sum of steps
 
 }  // namespace
 
-std::string WrenchCommands::violation(const WrenchCommand& command, const std::vector<BodyState>& states) const {
-  if (!command.force.allFinite()) return "force " + shown(command.force) + ": expected finite numbers";
-  if (!command.torque.allFinite()) return "torque " + shown(command.torque) + ": expected finite numbers";
-  if (!command.point.allFinite()) return "point " + shown(command.point) + ": expected finite numbers";
-  if (!command.frame.empty() && !frames_.pose(command.frame, states)) return frames_.describeUnknown(command.frame);
-  return "";
+Wrench aboutCentreOfMass(const WrenchCommand& command, const Eigen::Isometry3d& X_WF, const Eigen::Vector3d& p_WBcm) {
+  Wrench wrench;
+  wrench.force = X_WF.linear() * command.force;
+  wrench.torque = X_WF.linear() * command.torque + (X_WF * command.point - p_WBcm).cross(wrench.force);
+  return wrench;
 }
 
-void WrenchCommands::hold(int body, const WrenchCommand& command) {
-  auto& list = active_[body];
-  list.erase(std::remove_if(list.begin(), list.end(), [](const Active& a) { return a.held; }), list.end());
-  list.push_back({command, true, false, std::nullopt});
+void WrenchCommands::hold(int body, const WrenchCommand& command) { held_[body].assign(1, Entry{command}); }
+
+void WrenchCommands::apply(int body, const WrenchCommand& command) { applied_[body].push_back(Entry{command}); }
+
+void WrenchCommands::clear(int body) {
+  held_[body].clear();
+  applied_[body].clear();
 }
 
-void WrenchCommands::add(int body, const WrenchCommand& command) {
-  if (command.end > command.start) active_[body].push_back({command, false, false, std::nullopt});
+void WrenchCommands::clear() {
+  for (std::size_t b = 0; b < held_.size(); ++b) clear(static_cast<int>(b));
 }
 
-void WrenchCommands::clear(int body) { active_[body].clear(); }
-
-void WrenchCommands::clearAll() {
-  for (auto& list : active_) list.clear();
-}
-
-bool WrenchCommands::hasEnded(const Active& active, double time) const {
-  return time >= active.command.end - kTimeSlack && active.has_acted;
-}
-
-Wrench WrenchCommands::evaluate(Active& active, const std::vector<BodyState>& states, const RigidBody& body) const {
-  const WrenchCommand& command = active.command;
-  if (command.frame.empty()) return {command.force, command.torque + command.point.cross(command.force)};
-  if (const auto pose = frames_.pose(command.frame, states)) active.X_WF = pose;
-  if (!active.X_WF) return {};
-  const Isometry3d& X_WF = *active.X_WF;
-  const Vector3d force = X_WF.linear() * command.force;
-  return {force, X_WF.linear() * command.torque + (X_WF * command.point - body.p_WBcm).cross(force)};
-}
-
-std::vector<Wrench> WrenchCommands::take(double time, const std::vector<BodyState>& states,
-                                         const std::vector<RigidBody>& bodies) {
-  std::vector<Wrench> sums(active_.size());
-  for (std::size_t b = 0; b < active_.size(); ++b) {
-    auto& list = active_[b];
-    list.erase(std::remove_if(list.begin(), list.end(), [&](const Active& a) { return hasEnded(a, time); }), list.end());
-    for (Active& active : list) {
-      if (active.command.start > time + kTimeSlack) continue;
-      const Wrench wrench = evaluate(active, states, bodies[b]);
-      active.has_acted = true;
-      sums[b].force += wrench.force;
-      sums[b].torque += wrench.torque;
-    }
+std::vector<Wrench> WrenchCommands::evaluate(double time, const std::vector<RigidBody>& bodies,
+                                             const FramePose& frame_pose, std::vector<std::string>& lost) {
+  std::vector<Wrench> sums(bodies.size());
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    evaluate(held_[b], time, bodies[b], frame_pose, sums[b], lost);
+    evaluate(applied_[b], time, bodies[b], frame_pose, sums[b], lost);
   }
   return sums;
+}
+
+void WrenchCommands::evaluate(std::vector<Entry>& entries, double time, const RigidBody& body,
+                              const FramePose& frame_pose, Wrench& sum, std::vector<std::string>& lost) {
+  std::vector<Entry> kept;
+  for (Entry& entry : entries) {
+    const bool over = entry.has_acted && time > entry.command.end - kTimeSlack;
+    if (over) continue;
+    if (time >= entry.command.start - kTimeSlack) {
+      try {
+        const Wrench wrench = aboutCentreOfMass(entry.command, frame_pose(entry.command.frame), body.p_WBcm);
+        sum.force += wrench.force;
+        sum.torque += wrench.torque;
+        entry.has_acted = true;
+      } catch (const RequestError& error) {
+        lost.push_back("wrench on \"" + body.name + "\" given up: " + error.what());
+        continue;
+      }
+    }
+    kept.push_back(entry);
+  }
+  entries.swap(kept);
 }
 
 }  // namespace monolith

@@ -1,60 +1,60 @@
 #pragma once
-// Wrenches that act on bodies for a while, in whatever frame they were given in.
+// Wrenches that users apply to bodies: one held per body from its topic, any number from the service. All of them are
+// summed anew before each step, in the frame where they were given as it then is: a wrench in a frame fixed to the
+// body turns with the body.
 //
-// A command in frame F (pose X_WF) acts with force R_WF f at the point X_WF r and with torque R_WF t; on the centre of
-// mass that is force R_WF f and torque R_WF t + (X_WF r - p_WBcm) x R_WF f. X_WF is taken anew each step, so a command
-// in the frame of a body follows that body. Times are s on the node's clock.
+// A command in frame F acts with force R_WF f at the point X_WF r and with torque R_WF t: on the centre of mass that
+// is force R_WF f and torque R_WF t + (X_WF r - p_WBcm) x R_WF f.
 
-#include <Eigen/Geometry>
-#include <optional>
+#include <functional>
 #include <string>
 #include <vector>
 
-#include "node/frame_tree.h"
+#include "rigid/integration.h"
 #include "rigid/rigid_body.h"
-#include "simulation/simulation.h"
 
 namespace monolith {
 
 struct WrenchCommand {
-  std::string frame;                                  // empty: world axes, point relative to the centre of mass
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();    // m
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();    // N
-  Eigen::Vector3d torque = Eigen::Vector3d::Zero();   // N m
-  double start = 0.0;                                 // s
-  double end = 0.0;                                   // s; infinity: until cleared
+  std::string frame;                                  // tf frame F; empty: the world
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();    // r, m
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();    // f, N
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();   // t, N m
+  double start = 0.0;                                 // s, simulated
+  double end = 0.0;                                   // s; acts in at least one step
 };
+
+Wrench aboutCentreOfMass(const WrenchCommand& command, const Eigen::Isometry3d& X_WF, const Eigen::Vector3d& p_WBcm);
 
 class WrenchCommands {
  public:
-  WrenchCommands(std::size_t bodies, const FrameTree& frames) : frames_(frames), active_(bodies) {}
+  explicit WrenchCommands(int bodies) : held_(bodies), applied_(bodies) {}
 
-  // Why a command cannot be taken; empty if it can.
-  std::string violation(const WrenchCommand& command, const std::vector<BodyState>& states) const;
-
-  // Replaces what was held for the body before.
+  // In place of what is held for the body.
   void hold(int body, const WrenchCommand& command);
-  // Acts besides everything else; for a step at least, unless end <= start.
-  void add(int body, const WrenchCommand& command);
+  // Beside what acts on the body already.
+  void apply(int body, const WrenchCommand& command);
   void clear(int body);
-  void clearAll();
+  void clear();
 
-  // Sum on each body for the step that starts at `time`; commands that have ended are dropped.
-  std::vector<Wrench> take(double time, const std::vector<BodyState>& states, const std::vector<RigidBody>& bodies);
+  // X_WF of a frame; throws RequestError.
+  using FramePose = std::function<Eigen::Isometry3d(const std::string& frame)>;
+
+  // The sum for each body in the step that begins at `time`. Commands that are over are forgotten. So are those whose
+  // frame is no longer known: a line for each is appended to `lost`.
+  std::vector<Wrench> evaluate(double time, const std::vector<RigidBody>& bodies, const FramePose& frame_pose,
+                               std::vector<std::string>& lost);
 
  private:
-  struct Active {
+  struct Entry {
     WrenchCommand command;
-    bool held;
     bool has_acted = false;
-    // Last known pose, for frames that vanish from tf while the command lasts.
-    std::optional<Eigen::Isometry3d> X_WF;
   };
-  bool hasEnded(const Active& active, double time) const;
-  Wrench evaluate(Active& active, const std::vector<BodyState>& states, const RigidBody& body) const;
+  static void evaluate(std::vector<Entry>& entries, double time, const RigidBody& body, const FramePose& frame_pose,
+                       Wrench& sum, std::vector<std::string>& lost);
 
-  const FrameTree& frames_;
-  std::vector<std::vector<Active>> active_;
+  std::vector<std::vector<Entry>> held_;     // at most one each
+  std::vector<std::vector<Entry>> applied_;
 };
 
 }  // namespace monolith

@@ -66,7 +66,7 @@ struct BodyDescription {
 };
 
 struct SolverDescription {
-  double tolerance = 1e-6;        // relative residual of the coupled solve
+  double tolerance = 1e-5;        // relative residual of the coupled solve
   int maximum_iterations = 200;   // of one coupled solve
   int threads = 0;                // 0: as many as the machine has; never changes a result
   double cfl = 1.0;               // cells that liquid or body may cross in one sub-step

@@ -1,0 +1,216 @@
+#!/usr/bin/python3
+"""The node as a process: exit codes, messages about what it cannot start with, a step that fails, shipped files."""
+
+import glob
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import roslaunch.config
+import roslib.packages
+import rospkg
+import rospy
+import rostest
+import yaml
+from diagnostic_msgs.msg import DiagnosticArray
+from monolith_tank.msg import Statistics
+from rosgraph_msgs.msg import Log
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from tank_client import NODE, Collector, Tank, waitUntil
+
+PACKAGE = rospkg.RosPack().get_path('monolith_tank')
+SCENES = os.path.join(PACKAGE, 'test/node/scenes')
+SMALL = os.path.join(SCENES, 'small.yaml')
+PROGRAM = roslib.packages.find_node('monolith_tank', 'monolith_tank_node')[0]
+
+
+def start(*arguments, name='monolith_tank'):
+    return subprocess.Popen([PROGRAM, '__name:=' + name] + list(arguments), stdout=subprocess.PIPE,
+                            stderr=subprocess.STDOUT, universal_newlines=True)
+
+
+class ProcessTest(unittest.TestCase):
+    runs = 0
+
+    @classmethod
+    def setUpClass(cls):
+        rospy.init_node('process_test')
+
+    def finish(self, *arguments, timeout_sec=60):
+        """Runs the node under a name, and so with parameters, of its own. Returns exit code and output."""
+        ProcessTest.runs += 1
+        process = start(*arguments, name='run_%d' % ProcessTest.runs)
+        try:
+            output, _ = process.communicate(timeout=timeout_sec)
+        finally:
+            process.kill()
+        return process.returncode, output
+
+    def refused(self, words, *arguments):
+        code, output = self.finish(*arguments)
+        self.assertEqual(code, 1, output)
+        self.assertIn('FATAL', output)
+        for word in words:
+            self.assertIn(word, output)
+
+    def sceneWith(self, change):
+        """A file beside small.yaml's URDFs with a changed scene."""
+        with open(SMALL) as stream:
+            scene = yaml.safe_load(stream)
+        for body in scene['bodies']:
+            body['urdf'] = os.path.join(SCENES, body['urdf'])
+        change(scene)
+        file = tempfile.NamedTemporaryFile('w', suffix='.yaml', delete=False)
+        self.addCleanup(os.remove, file.name)
+        with file:
+            yaml.safe_dump(scene, file)
+        return file.name
+
+    # --- scenes that cannot be simulated ---
+
+    def testMissingFile(self):
+        self.refused(['~scene', '/nowhere/scene.yaml', 'no such file'], '_scene:=/nowhere/scene.yaml')
+
+    def testMisspeltShippedScene(self):
+        self.refused(['dorp', '"drop"'], '_scene:=dorp')
+
+    def testUnknownKeyNamesFileAndNearestKey(self):
+        file = self.sceneWith(lambda scene: scene['liquid'].update(desnity=3.0))
+        self.refused([file, 'desnity', '"density"'], '_scene:=' + file)
+
+    def testMalformedFile(self):
+        file = tempfile.NamedTemporaryFile('w', suffix='.yaml', delete=False)
+        self.addCleanup(os.remove, file.name)
+        with file:
+            file.write('tank: [1, 2\n')
+        self.refused([file.name], '_scene:=' + file.name)
+
+    def testOverlappingBodies(self):
+        file = self.sceneWith(lambda scene: scene['bodies'][1].update(position=[-0.03, 0.0, 0.05]))
+        self.refused(['ball', 'probe', 'overlap'], '_scene:=' + file)
+
+    def testBodyNamedAsTheWorldFrame(self):
+        self.refused(['ball', '~world_frame'], '_scene:=' + SMALL, '_world_frame:=ball')
+
+    # --- parameters ---
+
+    def testNoScene(self):
+        self.refused(['~scene: missing'])
+
+    def testUnknownParameterAndWrongValuesAllAtOnce(self):
+        self.refused(['~start_pause: unknown', '~start_paused', '~state_rate: value 0', '> 0', '~paced: value 3',
+                      'true or false'],
+                     '_scene:=' + SMALL, '_start_pause:=true', '_state_rate:=0', '_paced:=3')
+
+    # --- runs ---
+
+    def testBoundedRunEndsByItself(self):
+        code, output = self.finish('_scene:=' + SMALL, '_paced:=false', '_duration:=0.2', '_progress:=true')
+        self.assertEqual(code, 0, output)
+        self.assertIn('(100 %)', output)
+
+    def testPacedRunKeepsToRealTime(self):
+        begin = time.time()
+        code, output = self.finish('_scene:=' + SMALL, '_duration:=2.0', '_progress:=true')
+        wall = time.time() - begin
+        self.assertEqual(code, 0, output)
+        # Beside the run itself: starting, and half a second for the last messages.
+        self.assertGreater(wall, 2.0)
+        self.assertLess(wall, 6.0)
+
+    def testRateBeyondTheStepIsSaid(self):
+        code, output = self.finish('_scene:=' + SMALL, '_paced:=false', '_duration:=0.04', '_state_rate:=500.0')
+        self.assertEqual(code, 0, output)
+        self.assertRegex(output, 'state_rate: 500 Hz.*0.02 s.*50 Hz')
+
+    def testInterruptEndsCleanly(self):
+        process = start('_scene:=' + SMALL, '_duration:=0')
+        try:
+            Collector(NODE + '/statistics', Statistics).waitFor(2)
+            process.send_signal(signal.SIGINT)
+            output, _ = process.communicate(timeout=10)
+        finally:
+            process.kill()
+        self.assertEqual(process.returncode, 0, output)
+
+    def testStepThatFailsPausesAndKeepsTheState(self):
+        def unsolvable(scene):
+            scene['solver'].update(tolerance=1e-15, maximum_iterations=1)
+        statistics, log = Collector(NODE + '/statistics', Statistics), Collector('/rosout', Log)
+        diagnostics = Collector('/diagnostics', DiagnosticArray)
+        process = start('_scene:=' + self.sceneWith(unsolvable), '_start_paused:=true', '_duration:=0')
+        try:
+            tank = Tank()
+            before = tank.state('ball')
+            waitUntil(lambda: statistics.subscriber.get_num_connections() and diagnostics.subscriber.get_num_connections(),
+                      'topics')
+            tank.unpause()
+            waitUntil(lambda: any(not message.committed and message.status == 'not converged'
+                                  for message in statistics.messages), 'the failed step on ~statistics')
+            waitUntil(lambda: any(status.level in (2, b'\x02') and 'not committed' in status.message
+                                  for array in list(diagnostics.messages) for status in array.status),
+                      'the failed step on /diagnostics')
+            after = tank.state('ball')
+            self.assertEqual(after.header.stamp, before.header.stamp)
+            self.assertEqual(after.pose, before.pose)
+            # Paused: it takes single steps again, and they fail again.
+            response = tank.stepService(steps=1)
+            self.assertFalse(response.success)
+            self.assertTrue(response.message)
+            tank.reset()
+            waitUntil(lambda: any(message.level == Log.ERROR and 'not committed' in message.msg
+                                  for message in list(log.messages)), 'the error on /rosout')
+        finally:
+            process.send_signal(signal.SIGINT)
+            output, _ = process.communicate(timeout=10)
+            process.kill()
+        self.assertEqual(process.returncode, 0, output)
+
+    # --- what ships ---
+
+    def testEveryShippedSceneRuns(self):
+        scenes = [os.path.splitext(os.path.basename(file))[0] for file in glob.glob(PACKAGE + '/config/scenes/*.yaml')]
+        self.assertGreaterEqual(len(scenes), 3)
+        for scene in sorted(scenes):
+            code, output = self.finish('_scene:=' + scene, '_paced:=false', '_duration:=0.04')
+            self.assertEqual(code, 0, output)
+
+    def testSceneTemplateRuns(self):
+        code, output = self.finish('_scene:=' + PACKAGE + '/config/scene_template.yaml', '_paced:=false',
+                                   '_duration:=0.04')
+        self.assertEqual(code, 0, output)
+
+    def testNodeParameterFilesLoad(self):
+        for file in ('node.yaml', 'node_template.yaml'):
+            with open(os.path.join(PACKAGE, 'config', file)) as stream:
+                parameters = yaml.safe_load(stream)
+            parameters.update(scene=SMALL, duration=0.04, paced=False)
+            rospy.set_param('/run_%d' % (ProcessTest.runs + 1), parameters)
+            code, output = self.finish()
+            self.assertEqual(code, 0, output)
+
+    def testLaunchFilesLoadAndExplainTheirArguments(self):
+        files = glob.glob(PACKAGE + '/launch/*.launch')
+        self.assertTrue(files)
+        for file in files:
+            for arguments in ([], ['scene:=stack', 'duration:=1', 'bag:=x.bag', 'rviz:=true', 'paced:=false'],
+                              ['scene:=some/where.yaml', 'rviz:=true']):
+                config = roslaunch.config.load_config_default([(file, arguments)], None, verbose=False)
+                self.assertFalse(config.config_errors)
+                for node in config.nodes:
+                    self.assertTrue(roslib.packages.find_node(node.package, node.type), node.type)
+                    for path in re.findall(r'\S+\.rviz', node.args):
+                        self.assertTrue(os.path.exists(path), path)
+            with open(file) as stream:
+                for argument in re.findall(r'<arg\s[^>]*>', stream.read()):
+                    self.assertIn('doc="', argument)
+
+
+if __name__ == '__main__':
+    rostest.rosrun('monolith_tank', 'process', ProcessTest)
