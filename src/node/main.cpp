@@ -36,7 +36,7 @@ int main(int argc, char** argv) {
     monolith::TankNode node(global, local, *ros::getGlobalCallbackQueue(), options, scene);
     ROS_INFO("Scene %s: %zu bodies, tank of %g x %g x %g m, cells of %g m", scene.name.c_str(), scene.bodies.size(),
              scene.tank.size.x(), scene.tank.size.y(), scene.tank.size.z(), scene.tank.cell_width);
-    node.run();
+    if (!node.run()) return 1;
   } catch (const std::exception& error) {
     ROS_FATAL("Cannot start:\n%s", error.what());
     return 1;

@@ -60,6 +60,13 @@ std_msgs::Header StatePublisher::header() const {
 void StatePublisher::publishConstant() {
   tank_.publish(makeTankMarkers(simulation_.scene().tank, world_frame_));
   tf2_msgs::TFMessage frames;
+  // The tank's corner. It also makes the world frame known to tf while nothing moves.
+  geometry_msgs::TransformStamped corner;
+  corner.header = header();
+  corner.child_frame_id = ReferenceFrames::linkFrame(world_frame_, "tank");
+  corner.transform.translation = toVector(simulation_.scene().tank.origin);
+  corner.transform.rotation.w = 1.0;
+  frames.transforms.push_back(corner);
   for (const BodyDescription& body : simulation_.scene().bodies) {
     local_.setParam(body.name + "/robot_description", body.urdf_xml);
     for (const LinkFrame& link : body.links) {

@@ -59,7 +59,7 @@ Marker makePane(const TankDescription& tank, const std::string& world_frame, int
   pane.pose.position = toPoint(centre);
   pane.scale = toVector(size);
   if (axis == 2) {
-    setColour(pane, 0.80f, 0.82f, 0.84f, 1.0f);
+    setColour(pane, 0.95f, 0.96f, 0.97f, 1.0f);
   } else {
     setColour(pane, 0.70f, 0.85f, 0.95f, 0.10f);
   }

@@ -41,12 +41,14 @@ TankNode::TankNode(ros::NodeHandle& global, ros::NodeHandle& local, ros::Callbac
   }
 }
 
-void TankNode::run() {
+bool TankNode::run() {
   if (options_.wait_for_subscribers) waitForSubscribers();
   publisher_.publishConstant();
   publisher_.publish(control_.simulation().report(), 0.0, true);
   setPaused(options_.start_paused);
-  while (ros::ok() && !isFinished()) {
+  // A bounded run has nobody who would unpause it: a failed step ends it.
+  const auto hasFailed = [this] { return options_.duration > 0.0 && health_.failed; };
+  while (ros::ok() && !isFinished() && !hasFailed()) {
     updateDiagnostics(false);
     if (health_.paused) {
       serve(kIdleSec);
@@ -60,6 +62,7 @@ void TankNode::run() {
   }
   progress_.reset();
   if (ros::ok()) linger();
+  return !hasFailed();
 }
 
 void TankNode::serve(double wall_sec) {

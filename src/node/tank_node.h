@@ -32,8 +32,8 @@ class TankNode {
   TankNode(ros::NodeHandle& global, ros::NodeHandle& local, ros::CallbackQueue& queue, const NodeOptions& options,
            const Scene& scene);
 
-  // Until the duration is over or ROS shuts down.
-  void run();
+  // Until the duration is over or ROS shuts down. False if a bounded run ended because a step failed.
+  [[nodiscard]] bool run();
 
  private:
   void waitForSubscribers();

@@ -26,6 +26,7 @@ constexpr int kMaximumLines = 600;
 struct Import {
   int line;
   std::string path;
+  bool quoted;
 };
 
 // Rooms of src/, each with those that it may import from beside itself.
@@ -62,13 +63,13 @@ inline std::vector<std::string> splitLines(const std::string& text) {
 }
 
 inline std::vector<Import> importsOf(const std::string& text) {
-  static const std::regex pattern("^\\s*#\\s*include\\s*[<\"]([^>\"]+)[>\"].*");
+  static const std::regex pattern("^\\s*#\\s*include\\s*([<\"])([^>\"]+)[>\"].*");
   std::vector<Import> imports;
   int number = 0;
   for (const std::string& line : splitLines(text)) {
     ++number;
     std::smatch match;
-    if (std::regex_match(line, match, pattern)) imports.push_back({number, match[1]});
+    if (std::regex_match(line, match, pattern)) imports.push_back({number, match[2], match[1] == "\""});
   }
   return imports;
 }
@@ -93,7 +94,13 @@ inline void checkImport(const Files& files, const std::string& path, const Impor
   }
   const std::string imported = "src/" + import.path;
   const std::string other = roomOf(imported);
-  if (!allowedImports().count(other)) return;  // of the system or a library
+  if (!allowedImports().count(other)) {
+    // Of the system or a library; but "name.h" and "../room/name.h" would slip past the rules.
+    if (import.quoted || import.path.find("..") != std::string::npos) {
+      violations.push_back(located(path, import.line, "expected \"ROOM/FILE\" or <LIBRARY>: " + import.path));
+    }
+    return;
+  }
   if (!files.count(imported)) violations.push_back(located(path, import.line, "no such file: " + imported));
   if (other != room && !allowedImports().at(room).count(other)) {
     violations.push_back(located(path, import.line, room + " may not import from " + other + ": " + import.path));

@@ -15,7 +15,7 @@ import rosbag
 import rostest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from tank_client import NODE, allFinite
+from tank_client import NODE, allFinite, numbers
 
 DURATION_SEC = 1.0
 STEP_SEC = 0.02
@@ -113,14 +113,15 @@ class BagTest(unittest.TestCase):
         states = self.own('body_states')
         for index, body in enumerate(BODIES):
             for state, odometry in zip(states, self.own(body + '/odom')):
-                self.assertEqual(state.poses[index], odometry.pose.pose)
+                self.assertEqual(numbers(state.poses[index]), numbers(odometry.pose.pose))
                 self.assertEqual(odometry.child_frame_id, body)
 
     def testSurfaceStartsAtTheFillLevel(self):
         points = self.points(self.own('surface')[0])
         columns = (TANK / CELL) ** 2
         self.assertGreater(len(points), 0.8 * columns)
-        self.assertLess(len(points), 1.5 * columns)
+        # A surface that runs between two layers of cells has a point in each.
+        self.assertLessEqual(len(points), 2 * columns)
         for point in points:
             self.assertAlmostEqual(point[2], FILL_LEVEL, delta=0.01 * CELL)
             self.assertAlmostEqual(point[5], 1.0, delta=1e-3)

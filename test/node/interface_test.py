@@ -175,6 +175,8 @@ class InterfaceTest(unittest.TestCase):
         links = {t.child_frame_id: t for message in static.messages for t in message.transforms}
         self.assertEqual(links['probe/tip'].header.frame_id, 'probe')
         self.assertAlmostEqual(links['probe/tip'].transform.translation.z, 0.02)
+        self.assertEqual(links['world/tank'].header.frame_id, 'world')
+        self.assertAlmostEqual(links['world/tank'].transform.translation.x, -0.08)
         self.assertEqual(links['ball/core'].header.frame_id, 'ball')
 
     def testSurfaceIsTheFillLevel(self):

@@ -169,7 +169,7 @@ TEST(SceneTemplate, DefaultsItStatesAreThoseOfTheCode) {
   EXPECT_EQ(defaults.liquid.fill_level, 0.0);
   EXPECT_EQ(defaults.gravity, Vector3d(0.0, 0.0, -9.81));
   EXPECT_EQ(defaults.time_step, 0.02);
-  EXPECT_EQ(defaults.solver.tolerance, 1e-6);
+  EXPECT_EQ(defaults.solver.tolerance, 1e-5);
   EXPECT_EQ(defaults.solver.maximum_iterations, 200);
   EXPECT_EQ(defaults.solver.threads, 0);
   EXPECT_EQ(defaults.solver.cfl, 1.0);
