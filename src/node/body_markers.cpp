@@ -89,7 +89,8 @@ void setShape(const Shape& shape, Marker& marker) {
       marker.type = Marker::TRIANGLE_LIST;
       setScale(marker, 1.0, 1.0, 1.0);
       for (const Eigen::Vector3i& triangle : shape.mesh->triangles) {
-        for (int corner = 0; corner < 3; ++corner) marker.points.push_back(toPoint(shape.mesh->vertices[triangle[corner]]));
+        for (int corner = 0; corner < 3; ++corner)
+          marker.points.push_back(toPoint(shape.mesh->vertices[triangle[corner]]));
       }
       return;
   }
@@ -116,7 +117,8 @@ std::vector<BodyMarker> visualMarkers(const BodyDescription& body, int index, st
       if (setGeometry(*visual->geometry, visual->material != nullptr, out.marker)) {
         markers.push_back(out);
       } else {
-        warnings.push_back(body.source + ": link \"" + frame.name + "\": visual cannot be shown: expected box, sphere, "
+        warnings.push_back(body.source + ": link \"" + frame.name +
+                           "\": visual cannot be shown: expected box, sphere, "
                            "cylinder or a mesh with a file");
       }
     }

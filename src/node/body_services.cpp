@@ -55,9 +55,8 @@ bool BodyServices::applyWrench(monolith_tank::ApplyBodyWrench::Request& request,
 
 bool BodyServices::clearWrenches(monolith_tank::ClearBodyWrenches::Request& request,
                                  monolith_tank::ClearBodyWrenches::Response& response) {
-  return answer("clear_body_wrenches", response, [&] {
-    control_.wrenches().clear(control_.findBody(request.body_name, "body_name"));
-  });
+  return answer("clear_body_wrenches", response,
+                [&] { control_.wrenches().clear(control_.findBody(request.body_name, "body_name")); });
 }
 
 bool BodyServices::getState(monolith_tank::GetBodyState::Request& request,

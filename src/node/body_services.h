@@ -19,7 +19,7 @@ namespace monolith {
 class BodyServices {
  public:
   struct Hooks {
-    std::function<ros::Time()> now;                              // stamp of the present state
+    std::function<ros::Time()> now;  // stamp of the present state
     std::function<void(const std::string& message)> refuse;
     std::function<void()> state_changed;
   };
@@ -27,7 +27,8 @@ class BodyServices {
   BodyServices(ros::NodeHandle& local, TankControl& control, const std::string& world_frame, Hooks hooks);
 
  private:
-  bool applyWrench(monolith_tank::ApplyBodyWrench::Request& request, monolith_tank::ApplyBodyWrench::Response& response);
+  bool applyWrench(monolith_tank::ApplyBodyWrench::Request& request,
+                   monolith_tank::ApplyBodyWrench::Response& response);
   bool clearWrenches(monolith_tank::ClearBodyWrenches::Request& request,
                      monolith_tank::ClearBodyWrenches::Response& response);
   bool getState(monolith_tank::GetBodyState::Request& request, monolith_tank::GetBodyState::Response& response);

@@ -57,8 +57,8 @@ void HealthDiagnostics::tellSolver(Status& status) {
   using diagnostic_msgs::DiagnosticStatus;
   const StepReport& report = health_.report;
   if (health_.failed) {
-    status.summary(DiagnosticStatus::ERROR, std::string("Step not committed: ") + toString(report.status) + ": " +
-                                                report.message);
+    status.summary(DiagnosticStatus::ERROR,
+                   std::string("Step not committed: ") + toString(report.status) + ": " + report.message);
   } else if (report.status == SolveStatus::kNotRun) {
     status.summary(DiagnosticStatus::OK, "No step yet");
   } else {
@@ -77,8 +77,7 @@ void HealthDiagnostics::tellSolver(Status& status) {
 void HealthDiagnostics::tellLiquid(Status& status) {
   using diagnostic_msgs::DiagnosticStatus;
   const StepReport& report = health_.report;
-  const double drift =
-      health_.initial_volume > 0.0 ? report.liquid_volume / health_.initial_volume - 1.0 : 0.0;
+  const double drift = health_.initial_volume > 0.0 ? report.liquid_volume / health_.initial_volume - 1.0 : 0.0;
   if (report.status == SolveStatus::kNotRun) {
     status.summary(DiagnosticStatus::OK, "No step yet");
   } else if (!report.model.liquid) {

@@ -27,9 +27,8 @@ bool isRobotDescription(const std::string& name, const XmlRpcValue& value) {
   if (endsWith(name, "robot_description")) return true;
   if (value.getType() != XmlRpcValue::TypeStruct) return false;
   XmlRpcValue entries = value;
-  return std::all_of(entries.begin(), entries.end(), [](const auto& entry) {
-    return isRobotDescription(entry.first, entry.second);
-  });
+  return std::all_of(entries.begin(), entries.end(),
+                     [](const auto& entry) { return isRobotDescription(entry.first, entry.second); });
 }
 
 class ParameterReader {
@@ -72,7 +71,8 @@ class ParameterReader {
         if (std::count(known_.begin(), known_.end(), entry.first) || isRobotDescription(entry.first, entry.second)) {
           continue;
         }
-        add("~" + entry.first + ": unknown parameter: expected another, the nearest is ~" + nearestWord(entry.first, known_));
+        add("~" + entry.first + ": unknown parameter: expected another, the nearest is ~" +
+            nearestWord(entry.first, known_));
       }
     }
     if (!errors_.empty()) throw OptionsError(errors_);

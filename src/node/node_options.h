@@ -9,16 +9,16 @@
 namespace monolith {
 
 struct NodeOptions {
-  std::string scene;                   // required: path or name of a shipped scene
+  std::string scene;  // required: path or name of a shipped scene
   bool paced = true;
   bool start_paused = false;
-  double duration = 0.0;               // s, simulated; 0: endless
-  double state_rate = 50.0;            // Hz, simulated, as all rates
+  double duration = 0.0;     // s, simulated; 0: endless
+  double state_rate = 50.0;  // Hz, simulated, as all rates
   double surface_rate = 10.0;
   double statistics_rate = 10.0;
   double marker_rate = 25.0;
   std::string world_frame = "world";
-  double wrench_timeout = 0.5;         // s, simulated
+  double wrench_timeout = 0.5;  // s, simulated
   bool wait_for_subscribers = false;
   bool progress = false;
 };

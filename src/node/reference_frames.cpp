@@ -15,8 +15,7 @@ constexpr int kMostAncestors = 1000;  // a loop in tf would never end
 
 }  // namespace
 
-ReferenceFrames::ReferenceFrames(const Scene& scene, const std::string& world_frame,
-                                 const tf2::BufferCore& transforms)
+ReferenceFrames::ReferenceFrames(const Scene& scene, const std::string& world_frame, const tf2::BufferCore& transforms)
     : world_frame_(world_frame), transforms_(transforms) {
   own_[world_frame] = {-1, Eigen::Isometry3d::Identity()};
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {

@@ -27,7 +27,7 @@ class ReferenceFrames {
 
  private:
   struct OwnFrame {
-    int body;                   // -1: the world
+    int body;  // -1: the world
     Eigen::Isometry3d X_BF;
   };
 

@@ -39,8 +39,10 @@ std::string findSceneFile(const std::string& scene) {
                      ", is the package " + kPackage + " on ROS_PACKAGE_PATH?");
   }
   if (std::find(names.begin(), names.end(), scene) == names.end()) {
-    throw SceneError("~scene: value " + scene + ": expected the path of a scene file or the name of a shipped scene, "
-                     "the nearest is \"" + nearestWord(scene, names) + "\"");
+    throw SceneError("~scene: value " + scene +
+                     ": expected the path of a scene file or the name of a shipped scene, "
+                     "the nearest is \"" +
+                     nearestWord(scene, names) + "\"");
   }
   return (folder / (scene + ".yaml")).string();
 }
@@ -48,9 +50,7 @@ std::string findSceneFile(const std::string& scene) {
 SceneResolver makeRosResolver() {
   SceneResolver resolver;
   resolver.package_path = [](const std::string& package) { return ros::package::getPath(package); };
-  resolver.parameter = [](const std::string& parameter, std::string& text) {
-    return ros::param::get(parameter, text);
-  };
+  resolver.parameter = [](const std::string& parameter, std::string& text) { return ros::param::get(parameter, text); };
   return resolver;
 }
 

@@ -8,9 +8,7 @@
 namespace monolith {
 
 TankControl::TankControl(const Scene& scene, const std::string& world_frame, const tf2::BufferCore& transforms)
-    : simulation_(scene),
-      frames_(scene, world_frame, transforms),
-      wrenches_(static_cast<int>(scene.bodies.size())) {}
+    : simulation_(scene), frames_(scene, world_frame, transforms), wrenches_(static_cast<int>(scene.bodies.size())) {}
 
 int TankControl::findBody(const std::string& name, const std::string& field) const {
   std::vector<std::string> names;
@@ -18,7 +16,8 @@ int TankControl::findBody(const std::string& name, const std::string& field) con
     if (body.name == name) return static_cast<int>(names.size());
     names.push_back(body.name);
   }
-  const std::string nearest = names.empty() ? "but the scene has none" : "the nearest is \"" + nearestWord(name, names) + "\"";
+  const std::string nearest =
+      names.empty() ? "but the scene has none" : "the nearest is \"" + nearestWord(name, names) + "\"";
   throw RequestError(field + ": value \"" + name + "\": expected a body of the scene, " + nearest);
 }
 
@@ -42,8 +41,7 @@ StepReport TankControl::step(std::vector<std::string>& lost) {
   const auto frame_pose = [this](const std::string& frame) {
     return frames_.pose(frame.empty() ? frames_.worldFrame() : frame, simulation_.bodies());
   };
-  const std::vector<Wrench> wrenches =
-      wrenches_.evaluate(simulation_.time(), simulation_.bodies(), frame_pose, lost);
+  const std::vector<Wrench> wrenches = wrenches_.evaluate(simulation_.time(), simulation_.bodies(), frame_pose, lost);
   try {
     for (std::size_t b = 0; b < wrenches.size(); ++b) simulation_.setWrench(static_cast<int>(b), wrenches[b]);
     return simulation_.step();

@@ -10,8 +10,8 @@ namespace {
 using Eigen::Vector3d;
 using visualization_msgs::Marker;
 
-constexpr double kEdgeThickness = 0.006;   // of the longest edge
-constexpr double kPaneThickness = 0.002;   // likewise
+constexpr double kEdgeThickness = 0.006;  // of the longest edge
+constexpr double kPaneThickness = 0.002;  // likewise
 
 Marker makeMarker(const std::string& world_frame, const std::string& name, int id) {
   Marker marker;

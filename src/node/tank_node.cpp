@@ -3,10 +3,10 @@
 namespace monolith {
 namespace {
 
-constexpr double kIdleSec = 0.02;           // between looks at the queue while paused
-constexpr double kHeartbeatSec = 0.1;       // between repetitions of /clock while time stands still
+constexpr double kIdleSec = 0.02;      // between looks at the queue while paused
+constexpr double kHeartbeatSec = 0.1;  // between repetitions of /clock while time stands still
 constexpr double kSubscriberTimeoutSec = 20.0;
-constexpr double kLingerSec = 0.5;          // for the last messages to leave before the node does
+constexpr double kLingerSec = 0.5;  // for the last messages to leave before the node does
 constexpr std::uint32_t kMostSteps = 100000;
 
 double wallNow() { return ros::SteadyTime::now().toSec(); }
@@ -33,8 +33,9 @@ TankNode::TankNode(ros::NodeHandle& global, ros::NodeHandle& local, ros::Callbac
   if (options.progress && options.duration > 0.0) progress_ = std::make_unique<ProgressBar>(options.duration);
   const double possible = 1.0 / scene.time_step;
   if (options.state_rate > possible * (1.0 + 1e-9)) {
-    ROS_WARN("~state_rate: %g Hz asked, but the scene's time_step of %g s gives at most %g Hz: publishing after every step",
-             options.state_rate, scene.time_step, possible);
+    ROS_WARN(
+        "~state_rate: %g Hz asked, but the scene's time_step of %g s gives at most %g Hz: publishing after every step",
+        options.state_rate, scene.time_step, possible);
   }
   if (!ros::Time::isSimTime()) {
     ROS_WARN("/use_sim_time is not set: messages have simulated time, but other nodes do not follow it");
@@ -104,10 +105,11 @@ bool TankNode::advance() {
   for (const std::string& message : lost) refuse(message);
   health_.failed = !health_.report.committed();
   if (health_.failed) {
-    ROS_ERROR("Step %ld at %g s not committed: %s: %s. The state is as before the step and the simulation is paused; "
-              "~unpause_physics tries again, ~reset_simulation starts over.",
-              health_.report.step + 1, control_.simulation().time(), toString(health_.report.status),
-              health_.report.message.c_str());
+    ROS_ERROR(
+        "Step %ld at %g s not committed: %s: %s. The state is as before the step and the simulation is paused; "
+        "~unpause_physics tries again, ~reset_simulation starts over.",
+        health_.report.step + 1, control_.simulation().time(), toString(health_.report.status),
+        health_.report.message.c_str());
     publisher_.publishStatistics(health_.report, factor_.value());
     setPaused(true);
     return false;
@@ -163,7 +165,8 @@ bool TankNode::stepPhysics(monolith_tank::StepPhysics::Request& request,
   if (!health_.paused) {
     response.message = "the simulation is running: expected it paused, call ~pause_physics first";
   } else if (request.steps < 1 || request.steps > kMostSteps) {
-    response.message = "steps: value " + std::to_string(request.steps) + ": expected 1 to " + std::to_string(kMostSteps);
+    response.message =
+        "steps: value " + std::to_string(request.steps) + ": expected 1 to " + std::to_string(kMostSteps);
   } else {
     response.success = true;
     for (std::uint32_t i = 0; i < request.steps && response.success && ros::ok(); ++i) response.success = advance();

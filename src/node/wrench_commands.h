@@ -16,12 +16,12 @@
 namespace monolith {
 
 struct WrenchCommand {
-  std::string frame;                                  // tf frame F; empty: the world
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();    // r, m
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();    // f, N
-  Eigen::Vector3d torque = Eigen::Vector3d::Zero();   // t, N m
-  double start = 0.0;                                 // s, simulated
-  double end = 0.0;                                   // s; acts in at least one step
+  std::string frame;                                 // tf frame F; empty: the world
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();   // r, m
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();   // f, N
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  // t, N m
+  double start = 0.0;                                // s, simulated
+  double end = 0.0;                                  // s; acts in at least one step
 };
 
 Wrench aboutCentreOfMass(const WrenchCommand& command, const Eigen::Isometry3d& X_WF, const Eigen::Vector3d& p_WBcm);
@@ -53,7 +53,7 @@ class WrenchCommands {
   static void evaluate(std::vector<Entry>& entries, double time, const RigidBody& body, const FramePose& frame_pose,
                        Wrench& sum, std::vector<std::string>& lost);
 
-  std::vector<std::vector<Entry>> held_;     // at most one each
+  std::vector<std::vector<Entry>> held_;  // at most one each
   std::vector<std::vector<Entry>> applied_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <omp.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <stdexcept>
@@ -159,7 +160,7 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
     // Whatever could touch within the step: at present speeds, and what gravity adds.
     double reach = bodySpeed() + scene.gravity.norm() * dt;
     for (const auto& twist : free_twists) reach = std::max(reach, twist.head<3>().norm());
-    contacts = detector->detect(state.bodies, 2.0 * reach * dt + 0.05 * grid.h);
+    contacts = detector->detect(state.bodies, std::min(2.0 * reach * dt, scene.tank.size.norm()) + 0.05 * grid.h);
     for (const Contact& contact : contacts) step.penetration = std::max(step.penetration, -contact.gap);
   }
   state.coupled.twists.resize(state.bodies.size());
@@ -196,7 +197,10 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
       speed += largest * largest;
     }
     step.maximum_speed = std::sqrt(speed);
-    const int layers = static_cast<int>(std::ceil(std::max(step.maximum_speed, bodySpeed()) * dt / grid.h)) + 3;
+    // As far as a trajectory of this step reaches, and no further than the tank.
+    const int most = *std::max_element(grid.lattice.n.begin(), grid.lattice.n.end());
+    const double reach = std::ceil(std::max(step.maximum_speed, bodySpeed()) * dt / grid.h);
+    const int layers = static_cast<int>(std::min(reach, static_cast<double>(most))) + 3;
     completeVelocity(grid, system.coefficients(), step_solids, state.bodies, layers, noSlip(), state.coupled.velocity,
                      state.known);
     state.surface[0].advect(state.coupled.velocity, dt, step.maximum_speed);

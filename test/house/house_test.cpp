@@ -127,10 +127,9 @@ TEST(House, HeadersAreGuarded) { EXPECT_EQ(joined(findUnguardedHeaders(sources()
 TEST(House, FilesAreShort) { EXPECT_EQ(joined(findLongFiles(sources())), ""); }
 
 TEST(House, NothingUnfinishedAndNoPathOfOneMachine) {
-  const Files files =
-      readFiles(MONOLITH_SOURCE_DIR, {"src", "test", "validation", "launch", "config", "urdf", "msg", "srv", ".ci",
-                                      "tank", "README.md", "LICENSE", "CMakeLists.txt", "package.xml", ".gitignore",
-                                      ".clang-format", ".clang-tidy"});
+  const Files files = readFiles(MONOLITH_SOURCE_DIR, {"src", "test", "validation", "launch", "config", "urdf", "msg",
+                                                      "srv", ".ci", "tank", "README.md", "LICENSE", "CMakeLists.txt",
+                                                      "package.xml", ".gitignore", ".clang-format", ".clang-tidy"});
   EXPECT_EQ(joined(findForbiddenWords(files)), "");
 }
 

@@ -259,7 +259,8 @@ class InterfaceTest(unittest.TestCase):
 
     def testWrenchInTheBodysOwnFrame(self):
         # The probe is turned by 90 degrees about z: its x axis is the world's y.
-        x, y, _, turn = self.drift('probe', lambda: self.send(self.probe_wrench, stamped('probe', force=(0.1, 0.0, 0.0))))
+        push = stamped('probe', force=(0.1, 0.0, 0.0))
+        x, y, _, turn = self.drift('probe', lambda: self.send(self.probe_wrench, push))
         self.assertGreater(y, 5e-5)
         self.assertLess(abs(x), 0.2 * y)
         # The body slides past a wall; had the force acted elsewhere it would turn by more than a degree.
@@ -267,7 +268,8 @@ class InterfaceTest(unittest.TestCase):
 
     def testWrenchOfAnotherBodysFrameActsAtItsOrigin(self):
         # From the ball's origin, at negative x of the probe, a force along y is a negative torque about the probe's z.
-        _, y, _, turn = self.drift('probe', lambda: self.send(self.probe_wrench, stamped('ball', force=(0.0, 0.1, 0.0))))
+        push = stamped('ball', force=(0.0, 0.1, 0.0))
+        _, y, _, turn = self.drift('probe', lambda: self.send(self.probe_wrench, push))
         self.assertGreater(y, 5e-5)
         self.assertLess(turn, -0.02)
 
@@ -279,7 +281,7 @@ class InterfaceTest(unittest.TestCase):
         self.assertGreater(tilted, 0.01)
 
     def testWrenchInAForeignFrame(self):
-        # A frame of somebody else's, 0.03 m beside the probe's centre along the probe's x and turned to the world's axes.
+        # Somebody else's frame, 0.03 m beside the probe's centre along the probe's x and turned to the world's axes.
         transform = TransformStamped()
         transform.header.frame_id = 'probe'
         transform.child_frame_id = 'thruster'
@@ -290,7 +292,8 @@ class InterfaceTest(unittest.TestCase):
         waitUntil(lambda: self.tank.get(body_name='probe', reference_frame='thruster').success, 'the foreign frame')
         in_frame = self.tank.state('probe', 'thruster').pose
         self.assertAlmostEqual(in_frame.position.y, -0.03)
-        x, _, _, turn = self.drift('probe', lambda: self.send(self.probe_wrench, stamped('thruster', force=(0.1, 0.0, 0.0))))
+        push = stamped('thruster', force=(0.1, 0.0, 0.0))
+        x, _, _, turn = self.drift('probe', lambda: self.send(self.probe_wrench, push))
         self.assertGreater(x, 5e-5)
         self.assertLess(turn, -0.02)
 

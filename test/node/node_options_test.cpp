@@ -128,8 +128,8 @@ TEST(NodeTemplate, NamesEveryParameterWithItsDefault) {
     names.insert(entry.first.as<std::string>());
   }
   EXPECT_EQ(names, (std::set<std::string>{"scene", "paced", "start_paused", "duration", "wait_for_subscribers",
-                                          "state_rate", "surface_rate", "statistics_rate", "marker_rate",
-                                          "world_frame", "wrench_timeout", "progress", "diagnostic_period"}));
+                                          "state_rate", "surface_rate", "statistics_rate", "marker_rate", "world_frame",
+                                          "wrench_timeout", "progress", "diagnostic_period"}));
 }
 
 }  // namespace

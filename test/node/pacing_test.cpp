@@ -16,7 +16,7 @@ TEST(RealTimePacer, DoesNotDrift) {
   double wall = 100.0;
   pacer.restart(wall, 5.0);
   for (int step = 1; step <= 10000; ++step) {
-    wall += 0.004;                                       // the step itself
+    wall += 0.004;  // the step itself
     const double simulated = 5.0 + 0.02 * step;
     wall += std::max(pacer.remaining(wall, simulated), 0.0) + 0.0003;  // sleeping is never exact
   }

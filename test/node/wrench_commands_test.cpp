@@ -65,8 +65,8 @@ TEST(AboutCentreOfMass, KeepsThePowerInEveryRigidMotion) {
   for (int i = 0; i < 6; ++i) {
     Vector6d motion = Vector6d::Unit(i);  // velocity of the centre of mass, angular velocity
     const Vector3d at_point = motion.head<3>() + motion.tail<3>().cross(X_WF * command.point - p_WBcm);
-    const double given = (X_WF.linear() * command.force).dot(at_point) +
-                         (X_WF.linear() * command.torque).dot(motion.tail<3>());
+    const double given =
+        (X_WF.linear() * command.force).dot(at_point) + (X_WF.linear() * command.torque).dot(motion.tail<3>());
     EXPECT_NEAR(wrench.force.dot(motion.head<3>()) + wrench.torque.dot(motion.tail<3>()), given, 1e-12);
   }
 }

@@ -251,6 +251,18 @@ TEST(Simulation, BadInputIsRefusedAndLosesNothing) {
   }
 }
 
+TEST(Simulation, AnAbsurdSpeedEndsInAReport) {
+  Scene scene = tank(0.08, 1.0);
+  scene.bodies.push_back(sphere("ball", 0.02, 500.0, {0.08, 0.08, 0.05}));
+  Simulation simulation(scene);
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation() = Eigen::Vector3d(0.08, 0.08, 0.05);
+  simulation.setBodyState(0, pose, Eigen::Vector3d(1e9, 0.0, 0.0), Eigen::Vector3d(1e9, 0.0, 0.0));
+  const StepReport r = simulation.step();
+  EXPECT_TRUE(simulation.bodyStates()[0].X_WB.matrix().allFinite());
+  EXPECT_TRUE(r.committed() || !r.message.empty());
+}
+
 TEST(Simulation, AWrenchPushesAndResetForgetsIt) {
   Scene scene = tank(0.08, 1.0);
   scene.gravity.setZero();
