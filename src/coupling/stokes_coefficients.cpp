@@ -107,8 +107,9 @@ double liquidPart(double distance_low, double distance_high) {
   if (low && high) return 1.0;
   if (!low && !high) return 0.0;
   const double wet = low ? distance_low : distance_high;
-  const double dry = std::max(0.0, low ? distance_high : distance_low);
-  return std::clamp(wet / (wet - dry), kLeastLiquid, 1.0);
+  const double dry = low ? distance_high : distance_low;
+  // A dry cell may lie just below the surface: the part is then just above one, and liquid at rest stays so.
+  return std::clamp(wet / (wet - dry), kLeastLiquid, 1.0 + 2.0 * kLeastLiquid);
 }
 
 Vector6d velocityRow(int axis, const Eigen::Vector3d& x, const Eigen::Vector3d& p_WBcm) {
