@@ -208,7 +208,6 @@ void buildBodyRows(const MacGrid& grid, const SolidFractions& solids, const std:
           }
           if (outside) continue;
           const auto c = l.index(cell[0], cell[1], cell[2]);
-          if (!coefficients.has_pressure[c]) continue;
           Vector6d row = Vector6d::Zero();
           for (int a = 0; a < 3; ++a) {
             int next[3] = {i, j, k};
@@ -219,7 +218,8 @@ void buildBodyRows(const MacGrid& grid, const SolidFractions& solids, const std:
             if (low == high) continue;
             row += (high - low) * velocityRow(a, grid.faceCenter(a, at[0], at[1], at[2]), bodies[b].p_WBcm);
           }
-          if (row.cwiseAbs().maxCoeff() > 0.0) out.divergence.push_back({c, static_cast<int>(b), row});
+          if (row.cwiseAbs().maxCoeff() == 0.0) continue;
+          (coefficients.has_pressure[c] ? out.divergence : out.enclosed).push_back({c, static_cast<int>(b), row});
         }
       }
     }

@@ -42,6 +42,7 @@ struct BodyRow {
 
 struct BodyRows {
   std::vector<BodyRow> divergence;         // per cell with pressure
+  std::vector<BodyRow> enclosed;           // likewise, per cell without: see enclosed_rows.h
   std::array<std::vector<BodyRow>, 3> normal;  // per cell: adds to U_a[c + a] - U_a[c]
   std::array<std::vector<BodyRow>, 3> shear;   // per edge: adds to t
   std::array<std::vector<BodyRow>, 3> drag;    // per sliver face: velocity of the solid there

@@ -89,6 +89,7 @@ monolith_tank::Statistics toStatistics(const StepReport& report, double real_tim
   message.substeps = static_cast<std::uint32_t>(report.substeps);
   message.iterations = static_cast<std::uint32_t>(report.iterations);
   message.liquid_solves = static_cast<std::uint32_t>(report.liquid_solves);
+  message.friction_iterations = static_cast<std::uint32_t>(report.friction_iterations);
   message.residual = report.residual;
   message.divergence = report.divergence;
   message.maximum_speed = report.maximum_speed;
@@ -102,6 +103,7 @@ monolith_tank::Statistics toStatistics(const StepReport& report, double real_tim
   message.free_surface = report.model.free_surface;
   message.coupled_bodies = static_cast<std::uint32_t>(report.model.coupled_bodies);
   message.contacts = static_cast<std::uint32_t>(report.model.contacts);
+  message.friction = report.model.friction;
   message.advection_time = report.times.advection;
   message.contact_time = report.times.contact;
   message.geometry_time = report.times.geometry;

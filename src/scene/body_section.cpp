@@ -94,6 +94,7 @@ Quaterniond readOrientation(const YAML::Node& node, const std::string& path, Vio
 }
 
 void readMotion(const YamlMap& map, BodyDescription& body, Violations& violations) {
+  map.read("material", body.material);
   const std::string motion = map.readWord("motion", "free", {"free", "fixed", "prescribed"});
   if (motion == "fixed") body.motion = BodyMotion::kFixed;
   if (motion == "prescribed") body.motion = BodyMotion::kPrescribed;
@@ -125,7 +126,7 @@ BodyDescription readBody(const YAML::Node& node, int index, const std::string& f
   BodyDescription body;
   const YamlMap map(node, "bodies[" + std::to_string(index) + "]",
                     {"name", "urdf", "urdf_parameter", "position", "orientation", "velocity", "angular_velocity",
-                     "motion", "prescribed"},
+                     "motion", "prescribed", "material"},
                     violations);
   readName(map, body);
   readUrdf(map, folder, resolver, node, body, violations);

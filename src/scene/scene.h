@@ -53,6 +53,7 @@ struct BodyDescription {
   std::string name;
   std::string source;                                      // URDF file or parameter, for messages
   std::string urdf_xml;                                    // the text itself, for visual markers
+  std::string material;                                    // for ContactDescription; may be empty
   BodyMotion motion = BodyMotion::kFree;
   PrescribedMotion prescribed;
   double mass = 1.0;                                       // kg
@@ -65,11 +66,30 @@ struct BodyDescription {
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  // initial, in W, rad/s
 };
 
+// How a step is solved (DESIGN 2) and contact coupled; the answer is the same.
+enum class SolverName { kFast, kDirect, kReference };
+enum class CouplingName { kUnified, kIterative };
+
 struct SolverDescription {
+  SolverName name = SolverName::kFast;
+  CouplingName coupling = CouplingName::kUnified;
   double tolerance = 1e-5;        // relative residual of the coupled solve
   int maximum_iterations = 200;   // of one coupled solve
   int threads = 0;                // 0: as many as the machine has; never changes a result
   double cfl = 1.0;               // cells that liquid or body may cross in one sub-step
+};
+
+// How surfaces meet: Coulomb friction and Newton's restitution, of pairs of bodies or materials; the walls of the tank are
+// a body and a material called "walls".
+struct ContactDescription {
+  struct Pair {
+    std::string a, b;            // names of bodies or materials
+    double friction = 0.0;
+    double restitution = 0.0;
+  };
+  double friction = 0.0;         // of pairs that are not listed
+  double restitution = 0.0;
+  std::vector<Pair> pairs;       // a pair of bodies wins over one with a material; then the first listed
 };
 
 struct Scene {
@@ -80,6 +100,7 @@ struct Scene {
   Eigen::Vector3d gravity = Eigen::Vector3d(0.0, 0.0, -9.81);  // m/s^2, in W
   double time_step = 0.02;                                 // s, the output step; sub-steps are chosen inside
   std::vector<BodyDescription> bodies;
+  ContactDescription contact;
   SolverDescription solver;
 };
 

@@ -54,7 +54,7 @@ void readBodies(const YamlMap& map, const std::string& folder, const SceneResolv
 Scene loadScene(const std::string& yaml_file, const SceneResolver& resolver) {
   const YAML::Node root = parseYaml(yaml_file);
   Violations violations(yaml_file);
-  const YamlMap map(root, "", {"tank", "name", "liquid", "gravity", "time_step", "solver", "bodies"}, violations);
+  const YamlMap map(root, "", {"tank", "name", "liquid", "gravity", "time_step", "contact", "solver", "bodies"}, violations);
   Scene scene;
   scene.source = yaml_file;
   scene.name = fs::path(yaml_file).stem().string();
@@ -68,6 +68,7 @@ Scene loadScene(const std::string& yaml_file, const SceneResolver& resolver) {
   if (map.has("solver")) readSolver(map.get("solver"), scene.solver, violations);
   const std::string folder = fs::absolute(yaml_file).parent_path().string();
   readBodies(map, folder, resolver, tank_usable, scene, violations);
+  if (map.has("contact")) readContact(map.get("contact"), scene.bodies, scene.contact, violations);
   violations.throwIfAny();
   return scene;
 }

@@ -14,6 +14,10 @@ bool readTank(const YAML::Node& node, TankDescription& tank, Violations& violati
 void readLiquid(const YAML::Node& node, const TankDescription& tank, bool tank_usable, LiquidDescription& liquid,
                 Violations& violations);
 
+// After the bodies, whose names and materials it refers to.
+void readContact(const YAML::Node& node, const std::vector<BodyDescription>& bodies, ContactDescription& contact,
+                 Violations& violations);
+
 void readSolver(const YAML::Node& node, SolverDescription& solver, Violations& violations);
 
 // Entry `index` of the list of bodies; `folder` is that of the scene file.

@@ -108,7 +108,15 @@ void readLiquid(const YAML::Node& node, const TankDescription& tank, bool tank_u
 }
 
 void readSolver(const YAML::Node& node, SolverDescription& solver, Violations& violations) {
-  const YamlMap map(node, "solver", {"tolerance", "maximum_iterations", "threads", "cfl"}, violations);
+  const YamlMap map(node, "solver", {"name", "coupling", "tolerance", "maximum_iterations", "threads", "cfl"},
+                    violations);
+  const std::string name = map.readWord("name", "fast", {"fast", "direct", "reference"});
+  solver.name = name == "direct"      ? SolverName::kDirect
+                : name == "reference" ? SolverName::kReference
+                                      : SolverName::kFast;
+  if (map.readWord("coupling", "unified", {"unified", "iterative"}) == "iterative") {
+    solver.coupling = CouplingName::kIterative;
+  }
   map.read("tolerance", solver.tolerance, Range::kPositive);
   if (solver.tolerance >= 1.0) map.fail("tolerance", "a relative residual below 1");
   map.read("maximum_iterations", solver.maximum_iterations, 1);

@@ -11,6 +11,7 @@
 #include "fluid/advection.h"
 #include "rigid/contact.h"
 #include "rigid/overlap.h"
+#include "simulation/contact_laws.h"
 #include "simulation/liquid_state.h"
 
 namespace monolith {
@@ -47,7 +48,8 @@ struct State {
 
 struct Simulation::Impl {
   explicit Impl(const Scene& s)
-      : scene(s), grid(makeGrid(s.tank, s.liquid)), walls(makeWalls(s.tank)), sampler(grid), system(grid) {}
+      : scene(s), grid(makeGrid(s.tank, s.liquid)), walls(makeWalls(s.tank)), sampler(grid),
+        system(grid, s.solver.name, s.solver.coupling), laws(s) {}
 
   static TankWalls makeWalls(const TankDescription& tank) {
     TankWalls walls;
@@ -73,6 +75,7 @@ struct Simulation::Impl {
   SolidFractions solids;        // at the bodies' present poses, sticking liquid not yet attached
   SolidFractions step_solids;   // as the last solve used them
   CoupledSystem system;
+  ContactLaws laws;
   std::unique_ptr<ContactDetector> detector;
   std::vector<Wrench> wrenches;
   double target_volume = 0.0;   // m^3
@@ -143,7 +146,7 @@ CoupledReport Simulation::Impl::solveWithLiquid(double dt, const std::vector<Vec
   options.tolerance = scene.solver.tolerance * (state.started ? 1.0 : kFirstTolerance);
   options.maximum_iterations = scene.solver.maximum_iterations;
   for (std::size_t b = 0; b < state.bodies.size(); ++b) state.coupled.twists[b] = state.bodies[b].twist;
-  return system.solve(free_velocity, free_twists, contacts, scene.gravity, options, state.coupled);
+  return system.solve(free_velocity, free_twists, contacts, laws.of(contacts), scene.gravity, options, state.coupled);
 }
 
 bool Simulation::Impl::substep(double dt, StepReport& step) {
@@ -167,6 +170,7 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
   const CoupledReport solved = solveWithLiquid(dt, free_twists, contacts, step);
   step.iterations += solved.iterations;
   step.liquid_solves += solved.solves;
+  step.friction_iterations += solved.friction_iterations;
   step.residual = std::max(step.residual, solved.residual);
   step.divergence = std::max(step.divergence, solved.divergence);
   if (solved.status != CoupledReport::Status::kConverged) {
@@ -183,6 +187,9 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
   step.model.free_surface = hasLiquid() && !state.surface[0].full();
   step.model.coupled_bodies = system.coupledBodies();
   step.model.contacts = static_cast<int>(contacts.size());
+  step.model.friction = std::any_of(contacts.begin(), contacts.end(), [&](const Contact& contact) {
+    return laws.of(contact.body_a, contact.body_b).friction > 0.0;
+  });
 
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
     state.bodies[b].twist = state.coupled.twists[b];

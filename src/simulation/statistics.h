@@ -26,6 +26,7 @@ struct ModelChoice {       // what the last sub-step modelled, chosen from the s
   bool free_surface = false;
   int coupled_bodies = 0;  // bodies with at least one coupling row
   int contacts = 0;
+  bool friction = false;   // at least one of the contacts has a friction coefficient
 };
 
 struct StepReport {
@@ -36,6 +37,7 @@ struct StepReport {
   int substeps = 0;
   int iterations = 0;              // Krylov, summed over the sub-steps
   int liquid_solves = 0;           // coupled linear solves, summed over the sub-steps
+  int friction_iterations = 0;     // staggered projections, summed over the sub-steps
   double residual = 0.0;           // relative, worst of the sub-steps
   double divergence = 0.0;         // 1/s, largest in a liquid cell
   double maximum_speed = 0.0;      // m/s, in the liquid

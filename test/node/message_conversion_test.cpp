@@ -69,6 +69,8 @@ TEST(MessageConversion, StatisticsCarryEveryStage) {
   report.step = 7;
   report.times.surface = 0.25;
   report.model.contacts = 3;
+  report.model.friction = true;
+  report.friction_iterations = 6;
   const monolith_tank::Statistics message = toStatistics(report, 0.5);
   EXPECT_FALSE(message.committed);
   EXPECT_EQ(message.status, "inconsistent");
@@ -76,6 +78,8 @@ TEST(MessageConversion, StatisticsCarryEveryStage) {
   EXPECT_EQ(message.step, 7u);
   EXPECT_EQ(message.surface_time, 0.25);
   EXPECT_EQ(message.contacts, 3u);
+  EXPECT_TRUE(message.friction);
+  EXPECT_EQ(message.friction_iterations, 6u);
   EXPECT_EQ(message.real_time_factor, 0.5);
 }
 

@@ -1,0 +1,109 @@
+#include "coupling/contact_rows.h"
+
+#include <cmath>
+
+namespace monolith {
+namespace {
+
+// A body that is already inside another is pushed out by this part of its depth in one step.
+constexpr double kRecovery = 0.5;
+// Contacts of two steps are the same one if they are closer than this.
+constexpr double kSamePlace = 0.5;  // cell widths
+
+// Two directions normal to n, the same for the same n.
+Eigen::Matrix<double, 3, 2> tangentBasis(const Eigen::Vector3d& n) {
+  Eigen::Index least;
+  n.cwiseAbs().minCoeff(&least);
+  Eigen::Matrix<double, 3, 2> t;
+  t.col(0) = n.cross(Eigen::Vector3d::Unit(least)).normalized();
+  t.col(1) = n.cross(t.col(0));
+  return t;
+}
+
+}  // namespace
+
+ContactRows buildContactRows(const StepProblem& problem, const std::vector<Contact>& contacts,
+                             const std::vector<ContactLaw>& laws, const std::vector<Vector6d>& twists,
+                             double resting_speed) {
+  const auto m = static_cast<Eigen::Index>(contacts.size());
+  ContactRows out;
+  out.J = Eigen::MatrixXd::Zero(3 * m, problem.bodyUnknowns());
+  out.bias = Eigen::VectorXd::Zero(3 * m);
+  out.friction = Eigen::VectorXd::Zero(m);
+  for (Eigen::Index c = 0; c < m; ++c) {
+    const Contact& contact = contacts[c];
+    out.friction[c] = laws[c].friction;
+    out.tangents.push_back(tangentBasis(contact.normal));
+    const Eigen::Index row[3] = {c, m + 2 * c, m + 2 * c + 1};
+    const Eigen::Vector3d axis[3] = {contact.normal, out.tangents[c].col(0), out.tangents[c].col(1)};
+    double approach = 0.0;  // gap rate at the start of the step
+    for (const auto& [body, sign] : {std::pair(contact.body_a, 1.0), std::pair(contact.body_b, -1.0)}) {
+      if (body == Contact::kWall) continue;
+      const RigidBody& rigid = (*problem.bodies)[body];
+      approach += sign * rigid.velocityAt(contact.point).dot(contact.normal);
+      for (int d = 0; d < 3; ++d) {
+        Vector6d j;
+        j.head<3>() = sign * axis[d];
+        j.tail<3>() = sign * (contact.point - rigid.p_WBcm).cross(axis[d]);
+        const int place = problem.free_index[body];
+        if (place < 0) {
+          out.bias[row[d]] += j.dot(twists[body]);
+        } else {
+          out.J.block<1, 6>(row[d], 6 * place) += j.transpose();
+        }
+      }
+    }
+    out.bias[c] += contact.gap * (contact.gap < 0.0 ? kRecovery : 1.0) / problem.dt;
+    // An impact within this step: it separates at the given part of its speed. What merely rests does not bounce.
+    const bool closes = contact.gap + approach * problem.dt <= 0.0;
+    if (laws[c].restitution > 0.0 && closes && approach < -resting_speed) {
+      out.bias[c] = std::min(out.bias[c], 0.0) + laws[c].restitution * approach;
+    }
+  }
+  return out;
+}
+
+Eigen::VectorXd warmStart(const StepProblem& problem, const ContactRows& rows, const std::vector<Contact>& contacts,
+                          const std::vector<ContactImpulse>& last) {
+  const Eigen::Index m = rows.count();
+  Eigen::VectorXd r = Eigen::VectorXd::Zero(3 * m);
+  for (Eigen::Index c = 0; c < m; ++c) {
+    const ContactImpulse* nearest = nullptr;
+    double least = kSamePlace * problem.grid.h;
+    for (const ContactImpulse& old : last) {
+      if (old.contact.body_a != contacts[c].body_a || old.contact.body_b != contacts[c].body_b) continue;
+      const double distance = (old.contact.point - contacts[c].point).norm();
+      if (distance < least) {
+        least = distance;
+        nearest = &old;
+      }
+    }
+    if (nearest == nullptr) continue;
+    r[c] = nearest->normal / problem.impulse_scale;
+    r.segment<2>(m + 2 * c) = rows.tangents[c].transpose() * nearest->friction / problem.impulse_scale;
+  }
+  return r;
+}
+
+void distributeImpulses(const StepProblem& problem, const ContactRows& rows, const std::vector<Contact>& contacts,
+                        const Eigen::VectorXd& r, std::vector<ContactImpulse>& impulses,
+                        std::vector<Wrench>& wrenches) {
+  const Eigen::Index m = rows.count();
+  impulses.clear();
+  wrenches.assign(problem.bodies->size(), Wrench());
+  for (Eigen::Index c = 0; c < m; ++c) {
+    ContactImpulse impulse;
+    impulse.contact = contacts[c];
+    impulse.normal = problem.impulse_scale * std::max(r[c], 0.0);
+    impulse.friction = problem.impulse_scale * rows.tangents[c] * r.segment<2>(m + 2 * c);
+    const Eigen::Vector3d force = (impulse.normal * contacts[c].normal + impulse.friction) / problem.dt;
+    for (const auto& [body, sign] : {std::pair(contacts[c].body_a, 1.0), std::pair(contacts[c].body_b, -1.0)}) {
+      if (body == Contact::kWall) continue;
+      wrenches[body].force += sign * force;
+      wrenches[body].torque += sign * (contacts[c].point - (*problem.bodies)[body].p_WBcm).cross(force);
+    }
+    impulses.push_back(impulse);
+  }
+}
+
+}  // namespace monolith

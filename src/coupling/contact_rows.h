@@ -1,0 +1,50 @@
+#pragma once
+// Rows of the contacts over the twists of the free bodies: velocity at contact c = J_c v + bias_c, one normal row and two
+// tangential ones. J = (J_n; J_t) with the m normal rows first, then two tangential ones per contact; impulses r =
+// (lambda; f) are ordered likewise, in the units of coupling/stokes_coefficients.h.
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "coupling/step_problem.h"
+#include "rigid/contact.h"
+
+namespace monolith {
+
+// How a pair of surfaces meets.
+struct ContactLaw {
+  double friction = 0.0;     // Coulomb coefficient
+  double restitution = 0.0;  // speed of separation over speed of approach, of impacts
+};
+
+// What a contact did in the last step; contacts of the next one start from it.
+struct ContactImpulse {
+  Contact contact;
+  double normal = 0.0;                                     // N s
+  Eigen::Vector3d friction = Eigen::Vector3d::Zero();      // N s, on body_a, in W
+};
+
+struct ContactRows {
+  Eigen::MatrixXd J;         // 3m x 6n
+  Eigen::VectorXd bias;      // 3m, m/s; normal: non-penetration is (J v + bias)_n >= 0
+  Eigen::VectorXd friction;  // m
+  std::vector<Eigen::Matrix<double, 3, 2>> tangents;
+
+  Eigen::Index count() const { return friction.size(); }
+};
+
+// `twists`: of the bodies that are not free. `laws`: one per contact. gravity * dt is the speed below which an approach is not
+// an impact.
+ContactRows buildContactRows(const StepProblem& problem, const std::vector<Contact>& contacts,
+                             const std::vector<ContactLaw>& laws, const std::vector<Vector6d>& twists,
+                             double resting_speed);
+
+// r from the impulses of the last step: those of the same bodies at about the same place.
+Eigen::VectorXd warmStart(const StepProblem& problem, const ContactRows& rows, const std::vector<Contact>& contacts,
+                          const std::vector<ContactImpulse>& last);
+
+// The impulses r with their contacts, and the wrenches (mean over the step) that they exert.
+void distributeImpulses(const StepProblem& problem, const ContactRows& rows, const std::vector<Contact>& contacts,
+                        const Eigen::VectorXd& r, std::vector<ContactImpulse>& impulses, std::vector<Wrench>& wrenches);
+
+}  // namespace monolith

@@ -1,0 +1,80 @@
+#include "coupling/contact_states.h"
+
+#include <cmath>
+
+namespace monolith {
+namespace {
+
+// Friction this close to the cone's edge, relative to its radius, slips.
+constexpr double kOnCone = 1e-7;
+
+}  // namespace
+
+ContactStates contactStates(const ContactRows& contacts, const Eigen::VectorXd& r) {
+  const Eigen::Index m = contacts.count();
+  ContactStates out;
+  out.state.assign(m, ContactState::kOpen);
+  out.direction = Eigen::VectorXd::Zero(2 * m);
+  for (Eigen::Index c = 0; c < m; ++c) {
+    if (!(r[c] > 0.0)) continue;
+    const double radius = contacts.friction[c] * r[c];
+    const Eigen::Vector2d f = r.segment<2>(m + 2 * c);
+    if (f.norm() < radius * (1.0 - kOnCone)) {
+      out.state[c] = ContactState::kStick;
+    } else {
+      out.state[c] = ContactState::kSlip;
+      if (radius > 0.0) out.direction.segment<2>(2 * c) = f.normalized();
+    }
+  }
+  return out;
+}
+
+ContactBorder makeBorder(const ContactRows& contacts, const ContactStates& states) {
+  const Eigen::Index m = contacts.count();
+  ContactBorder out;
+  for (Eigen::Index c = 0; c < m; ++c) {
+    if (states.state[c] == ContactState::kOpen) continue;
+    out.entry.push_back(c);
+    if (states.state[c] == ContactState::kStick) {
+      out.entry.push_back(m + 2 * c);
+      out.entry.push_back(m + 2 * c + 1);
+    }
+  }
+  const auto k = static_cast<Eigen::Index>(out.entry.size());
+  out.R.resize(k, contacts.J.cols());
+  out.C.resize(contacts.J.cols(), k);
+  out.bias.resize(k);
+  for (Eigen::Index i = 0; i < k; ++i) {
+    const Eigen::Index e = out.entry[i];
+    out.R.row(i) = contacts.J.row(e);
+    out.C.col(i) = contacts.J.row(e).transpose();
+    out.bias[i] = contacts.bias[e];
+    if (e < m && states.state[e] == ContactState::kSlip) {
+      out.C.col(i) += contacts.friction[e] *
+                      (contacts.J.middleRows<2>(m + 2 * e).transpose() * states.direction.segment<2>(2 * e));
+    }
+  }
+  return out;
+}
+
+Eigen::VectorXd impulses(const ContactRows& contacts, const ContactStates& states, const ContactBorder& border,
+                         const Eigen::VectorXd& y) {
+  const Eigen::Index m = contacts.count();
+  Eigen::VectorXd r = Eigen::VectorXd::Zero(3 * m);
+  for (Eigen::Index i = 0; i < border.count(); ++i) {
+    const Eigen::Index e = border.entry[i];
+    r[e] = y[i];
+    if (e < m && states.state[e] == ContactState::kSlip) {
+      r.segment<2>(m + 2 * e) = contacts.friction[e] * y[i] * states.direction.segment<2>(2 * e);
+    }
+  }
+  return r;
+}
+
+Eigen::VectorXd borderUnknowns(const ContactBorder& border, const Eigen::VectorXd& r) {
+  Eigen::VectorXd y(border.count());
+  for (Eigen::Index i = 0; i < border.count(); ++i) y[i] = r[border.entry[i]];
+  return y;
+}
+
+}  // namespace monolith

@@ -1,0 +1,78 @@
+#include "coupling/enclosed_rows.h"
+
+#include <array>
+
+namespace monolith {
+namespace {
+
+using Cell = std::array<int, 3>;
+
+// Breadth-first from all cells with pressure into `inside` cells: for each the nearest cell with pressure, and the steps
+// from there.
+struct Nearest {
+  std::vector<std::ptrdiff_t> cell;
+  std::vector<Cell> steps;
+};
+
+Nearest findNearest(const Lattice& l, const std::vector<std::uint8_t>& has_pressure, const std::vector<char>& inside) {
+  Nearest out;
+  out.cell.assign(l.size, -1);
+  out.steps.assign(l.size, Cell{0, 0, 0});
+  std::vector<Cell> front;
+  for (int k = 0; k < l.n[2]; ++k) {
+    for (int j = 0; j < l.n[1]; ++j) {
+      for (int i = 0; i < l.n[0]; ++i) {
+        const auto c = l.index(i, j, k);
+        if (!has_pressure[c]) continue;
+        out.cell[c] = c;
+        front.push_back({i, j, k});
+      }
+    }
+  }
+  for (std::size_t at = 0; at < front.size(); ++at) {
+    const Cell here = front[at];
+    const auto c = l.index(here[0], here[1], here[2]);
+    for (int a = 0; a < 3; ++a) {
+      for (const int direction : {-1, 1}) {
+        Cell next = here;
+        next[a] += direction;
+        if (l.periodic[a]) next[a] = (next[a] + l.n[a]) % l.n[a];
+        if (next[a] < 0 || next[a] >= l.n[a]) continue;
+        const auto n = l.index(next[0], next[1], next[2]);
+        if (out.cell[n] >= 0 || !inside[n]) continue;
+        out.cell[n] = out.cell[c];
+        out.steps[n] = out.steps[c];
+        out.steps[n][a] += direction;
+        front.push_back(next);
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<EnclosedRow> moveEnclosedRows(const MacGrid& grid, const StaggeredCoefficients<double>& coefficients,
+                                          const std::vector<double>& liquid_distance, BodyRows& rows) {
+  std::vector<EnclosedRow> moved;
+  if (rows.enclosed.empty()) return moved;
+  const Lattice& l = grid.lattice;
+  // Along the contact first: through a body only if the contact has no rim.
+  std::vector<char> contact(l.size, 0);
+  for (const BodyRow& row : rows.enclosed) contact[row.sample] = 1;
+  const Nearest along = findNearest(l, coefficients.has_pressure, contact);
+  const Nearest through = findNearest(l, coefficients.has_pressure, std::vector<char>(l.size, 1));
+  for (const BodyRow& row : rows.enclosed) {
+    if (!(liquid_distance[row.sample] < 0.0)) continue;
+    const Nearest& nearest = along.cell[row.sample] >= 0 ? along : through;
+    const auto q = nearest.cell[row.sample];
+    if (q < 0) continue;
+    rows.divergence.push_back({q, row.body, row.coefficient});
+    const Cell& steps = nearest.steps[row.sample];
+    moved.push_back({row.body, row.coefficient, grid.h * Eigen::Vector3d(steps[0], steps[1], steps[2])});
+  }
+  rows.enclosed.clear();
+  return moved;
+}
+
+}  // namespace monolith

@@ -1,0 +1,279 @@
+#include "coupling/fast_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "coupling/body_schur.h"
+#include "coupling/contact_states.h"
+#include "coupling/liquid_preconditioner.h"
+#include "solve/fgmres.h"
+#include "solve/staggered_projections.h"
+
+namespace monolith {
+namespace {
+
+// The bodies' resistance is estimated anew when the solve takes this many times the iterations that it took when fresh...
+constexpr double kStaleIterations = 1.4;
+// ... or the viscous number has changed by this factor.
+constexpr double kStaleNumber = 1.5;
+// Staggered projections on the small system are exact next to the tolerance of the whole.
+constexpr double kSmallTolerance = 1e-9;
+// Contacts have settled when what they do to the bodies' velocities changes by less than the solve's tolerance times this.
+constexpr double kLawFactor = 10.0;
+constexpr double kLeastSpeed = 1e-10;  // m/s
+
+}  // namespace
+
+struct FastSolver::Impl {
+  StepProblem* problem = nullptr;
+  LiquidPreconditioner preconditioner;
+  StepOperator op;
+  Fgmres krylov;
+  Eigen::MatrixXd resistance;  // of the free bodies, see BodySchur
+  std::vector<int> resistance_of;
+  double resistance_number = -1.0;
+  int fresh_iterations = 0;
+  bool stale = true;
+  StepVector in, out;
+  Eigen::VectorXd scale;  // Krylov unknown = scale * twist
+  Eigen::MatrixXd S;      // inertia plus resistance, in Krylov units
+  ContactBorder border;   // in Krylov units
+  double compliance = 0.0;
+  Eigen::PartialPivLU<Eigen::MatrixXd> small;  // S bordered by the contacts
+
+  const Lattice& lattice() const { return problem->grid.lattice; }
+  std::size_t liquidSize() const { return 4 * lattice().size; }
+  Eigen::Index bodySize() const { return problem->bodyUnknowns(); }
+
+  void updateSchur() {
+    StepProblem& p = *problem;
+    const bool same = resistance_of == p.free && resistance_number >= 0.0 &&
+                      p.viscous_number <= kStaleNumber * resistance_number &&
+                      resistance_number <= kStaleNumber * p.viscous_number && !stale;
+    if (!same) {
+      resistance = BodySchur::resistance(op, preconditioner, lattice(), p.bodies->size(), p.free);
+      resistance_of = p.free;
+      resistance_number = p.viscous_number;
+      fresh_iterations = 0;
+      stale = false;
+    }
+    scale.resize(bodySize());
+    S = resistance;
+    for (std::size_t i = 0; i < p.free.size(); ++i) {
+      S.block<6, 6>(6 * i, 6 * i) += p.inertia[i];
+      scale.segment<6>(6 * i) = p.twist_scale[i];
+    }
+    const Eigen::VectorXd inverse = scale.cwiseInverse();
+    S = (inverse.asDiagonal() * S * inverse.asDiagonal()).eval();
+  }
+
+  // Krylov vector <-> fields. Tail: bodies, then contacts.
+  void unpack(const std::vector<double>& x, StepVector& v) const {
+    const std::size_t size = lattice().size;
+    for (int a = 0; a < 3; ++a) std::copy_n(x.begin() + a * size, size, v.velocity[a].begin());
+    std::copy_n(x.begin() + 3 * size, size, v.pressure.begin());
+    for (auto& twist : v.bodies) twist.setZero();
+    const Eigen::Map<const Eigen::VectorXd> tail(x.data() + liquidSize(), bodySize());
+    scatterBodies(*problem, tail.cwiseQuotient(scale), v.bodies);
+  }
+  void pack(const StepVector& v, std::vector<double>& x, bool forces) const {
+    const std::size_t size = lattice().size;
+    for (int a = 0; a < 3; ++a) std::copy_n(v.velocity[a].begin(), size, x.begin() + a * size);
+    std::copy_n(v.pressure.begin(), size, x.begin() + 3 * size);
+    Eigen::Map<Eigen::VectorXd> tail(x.data() + liquidSize(), bodySize());
+    const Eigen::VectorXd b = gatherBodies(*problem, v.bodies);
+    if (forces) {
+      tail = b.cwiseQuotient(scale);
+    } else {
+      tail = b.cwiseProduct(scale);
+    }
+  }
+
+  void setBorder(const ContactBorder& physical) {
+    border = physical;
+    border.R = physical.R * scale.cwiseInverse().asDiagonal();
+    border.C = scale.cwiseInverse().asDiagonal() * physical.C;
+    const Eigen::Index n = bodySize(), k = border.count();
+    Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n + k, n + k);
+    M.topLeftCorner(n, n) = S;
+    M.bottomLeftCorner(k, n) = -border.R;
+    M.topRightCorner(n, k) = -border.C;
+    M.bottomRightCorner(k, k).diagonal().setConstant(-compliance);
+    if (M.size() > 0) small.compute(M);
+  }
+
+  void apply(const std::vector<double>& from, std::vector<double>& to) {
+    to.resize(from.size());
+    unpack(from, in);
+    problem->apply(in, out);
+    pack(out, to, true);
+    const Eigen::Index n = bodySize(), k = border.count();
+    if (k == 0) return;
+    const Eigen::Map<const Eigen::VectorXd> v(from.data() + liquidSize(), n);
+    const Eigen::Map<const Eigen::VectorXd> y(from.data() + liquidSize() + n, k);
+    Eigen::Map<Eigen::VectorXd>(to.data() + liquidSize(), n) -= border.C * y;
+    Eigen::Map<Eigen::VectorXd>(to.data() + liquidSize() + n, k) = -border.R * v - compliance * y;
+  }
+
+  void precondition(const std::vector<double>& from, std::vector<double>& to) {
+    to.resize(from.size());
+    unpack(from, in);
+    preconditioner.apply(in, out);
+    // Bodies feel what the liquid has just been given.
+    op.bodyForces(out, in.bodies);
+    for (auto& field : out.velocity) clearHalo(lattice(), field);
+    clearHalo(lattice(), out.pressure);
+    pack(out, to, false);
+    const Eigen::Index n = bodySize() + border.count();
+    if (n == 0) return;
+    Eigen::VectorXd r = Eigen::Map<const Eigen::VectorXd>(from.data() + liquidSize(), n);
+    r.head(bodySize()) -= gatherBodies(*problem, in.bodies).cwiseQuotient(scale);
+    Eigen::Map<Eigen::VectorXd>(to.data() + liquidSize(), n) = small.solve(r);
+  }
+
+  KrylovReport linearSolve(std::vector<double>& rhs, std::vector<double>& x, double goal, const CoupledOptions& options,
+                           CoupledReport& report) {
+    KrylovOptions k;
+    k.absolute_tolerance = goal;
+    k.maximum_iterations = options.maximum_iterations;
+    const KrylovReport done = krylov.solve([this](const auto& from, auto& to) { apply(from, to); },
+                                           [this](const auto& from, auto& to) { precondition(from, to); }, rhs, x, k);
+    report.iterations += done.iterations;
+    ++report.solves;
+    return done;
+  }
+
+  // The estimate of the resistance is old if it takes clearly more iterations than when it was made.
+  void judgeAge(const CoupledReport& report) {
+    if (report.solves == 0 || bodySize() == 0) return;
+    const int iterations = report.iterations / report.solves;
+    if (fresh_iterations == 0) fresh_iterations = std::max(iterations, 5);
+    stale = iterations > kStaleIterations * fresh_iterations + 1;
+  }
+
+  CoupledReport notConverged(CoupledReport report, const std::string& message) {
+    stale = true;
+    report.status = CoupledReport::Status::kNotConverged;
+    report.message = message;
+    return report;
+  }
+};
+
+FastSolver::FastSolver() : impl_(std::make_unique<Impl>()) {}
+FastSolver::~FastSolver() = default;
+
+void FastSolver::prepare(StepProblem& problem) {
+  Impl& m = *impl_;
+  m.problem = &problem;
+  m.op.set(&problem.coefficients, &problem.rows);
+  std::vector<StaggeredCoefficients<float>> levels = std::move(problem.coarse);
+  problem.coarse = m.preconditioner.takeLevels();
+  levels[0] = convertCoefficients<float>(problem.coefficients);
+  m.preconditioner.set(std::move(levels), problem.viscous_number, &problem.regions);
+}
+
+CoupledReport FastSolver::solve(const StepVector& rhs, const CoupledOptions& options, StepVector& x) {
+  Eigen::VectorXd none;
+  ContactRows no_contacts;
+  no_contacts.J.resize(0, impl_->bodySize());
+  return solveWithContacts(rhs, no_contacts, options, x, none);
+}
+
+CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const ContactRows& contacts,
+                                            const CoupledOptions& options, StepVector& x_fields, Eigen::VectorXd& r) {
+  Impl& m = *impl_;
+  StepProblem& p = *m.problem;
+  CoupledReport report;
+  m.in.resize(m.lattice(), p.bodies->size());
+  m.out.resize(m.lattice(), p.bodies->size());
+  m.updateSchur();
+  const std::size_t tail = m.liquidSize() + static_cast<std::size_t>(m.bodySize());
+  std::vector<double> rhs(tail), x(tail);
+  m.pack(rhs_fields, rhs, true);
+  m.pack(x_fields, x, false);
+  const double rhs_norm = stepNorm(p, rhs_fields);
+  const Eigen::Index count = contacts.count();
+
+  // Response of the contacts on the approximate Schur complement.
+  Eigen::MatrixXd D;
+  m.compliance = 0.0;
+  ContactStates states;
+  const auto velocities = [&](const std::vector<double>& from) {
+    const Eigen::Map<const Eigen::VectorXd> v(from.data() + m.liquidSize(), m.bodySize());
+    return Eigen::VectorXd(contacts.J * v.cwiseQuotient(m.scale) + contacts.bias);
+  };
+  if (count > 0) {
+    const auto n = m.bodySize();
+    const Eigen::VectorXd inverse = m.scale.cwiseInverse();
+    const Eigen::MatrixXd K = inverse.asDiagonal() * m.S.ldlt().solve(Eigen::MatrixXd::Identity(n, n)) * inverse.asDiagonal();
+    D = contactResponse(contacts, K, m.compliance);
+    // One cycle on the whole residual says roughly how the bodies would move without contact.
+    m.setBorder(makeBorder(contacts, {std::vector<ContactState>(count, ContactState::kOpen), {}}));
+    std::vector<double> residual(tail), z(tail);
+    m.apply(x, residual);
+    for (std::size_t i = 0; i < tail; ++i) residual[i] = rhs[i] - residual[i];
+    m.precondition(residual, z);
+    for (std::size_t i = 0; i < tail; ++i) z[i] += x[i];
+    if (r.size() != 3 * count) r = Eigen::VectorXd::Zero(3 * count);
+    const FrictionReport friction =
+        solveFrictionalContact(D, velocities(z), contacts.friction, kSmallTolerance, r);
+    report.friction_iterations += friction.iterations;
+    states = contactStates(contacts, r);
+  }
+
+  bool lawful = false;
+  KrylovReport last;
+  for (int round = 0; round < options.maximum_rounds && !lawful; ++round) {
+    const ContactBorder border = makeBorder(contacts, states);
+    m.setBorder(border);
+    const Eigen::VectorXd start = borderUnknowns(border, r);
+    rhs.resize(tail + border.count());
+    x.resize(tail + border.count());
+    for (Eigen::Index i = 0; i < border.count(); ++i) {
+      rhs[tail + i] = border.bias[i];
+      x[tail + i] = start[i];
+    }
+    last = m.linearSolve(rhs, x, options.tolerance * rhs_norm, options, report);
+    if (!last.converged) break;
+    if (count == 0) {
+      lawful = true;
+      break;
+    }
+    const Eigen::VectorXd y = Eigen::Map<const Eigen::VectorXd>(x.data() + tail, border.count());
+    r = impulses(contacts, states, border, y);
+    const Eigen::VectorXd w = velocities(x);
+    // The small system, shifted so that it reproduces this solution exactly, says what the contacts do next. If that
+    // moves no body, its impulses obey Coulomb's law here.
+    Eigen::VectorXd next = r;
+    const FrictionReport friction =
+        solveFrictionalContact(D, w - D * r + m.compliance * r, contacts.friction, kSmallTolerance, next);
+    report.friction_iterations += friction.iterations;
+    const double change = (D * (next - r)).cwiseAbs().maxCoeff();
+    lawful = friction.solved && change <= kLawFactor * options.tolerance * (D * next).cwiseAbs().maxCoeff() + kLeastSpeed;
+    r = next;
+    states = contactStates(contacts, next);
+  }
+
+  report.residual = rhs_norm > 0.0 ? last.residual / rhs_norm : 0.0;
+  std::ostringstream text;
+  if (!last.converged || !std::isfinite(last.residual)) {
+    text << "the coupled solve stopped at a relative residual of " << report.residual << " after " << last.iterations
+         << " iterations; wanted " << options.tolerance;
+    return m.notConverged(report, text.str());
+  }
+  if (!lawful) {
+    text << "the contacts did not settle in " << report.solves << " solves (" << count << " contacts)";
+    return m.notConverged(report, text.str());
+  }
+  m.judgeAge(report);
+  const std::vector<Vector6d> others = x_fields.bodies;
+  m.unpack(x, x_fields);
+  for (std::size_t b = 0; b < others.size(); ++b) {
+    if (p.free_index[b] < 0) x_fields.bodies[b] = others[b];
+  }
+  report.status = CoupledReport::Status::kConverged;
+  return report;
+}
+
+}  // namespace monolith

@@ -1,0 +1,261 @@
+#include "coupling/reference_solver.h"
+
+#include <Eigen/IterativeLinearSolvers>
+#include <cmath>
+#include <sstream>
+
+#include "coupling/stress_system.h"
+#include "solve/disc_qp.h"
+#include "solve/lcp.h"
+#include "solve/mprgp.h"
+
+namespace monolith {
+namespace {
+
+constexpr int kMaximumIterations = 100000;  // of MPRGP, in all
+constexpr int kMaximumTightenings = 8;
+constexpr double kTightening = 0.1;
+constexpr double kResponseTolerance = 1e-5;  // of the bodies' response, which steers the friction problem
+constexpr double kSmallTolerance = 1e-11;
+constexpr int kMaximumCorrections = 30;      // of the friction problem
+constexpr double kLawFactor = 10.0;  // staggered projections end when impulses change by less than this times the tolerance
+
+// Of all impulses lambda >= 0 that do the same to the bodies, those of least norm, as the other solvers choose them: how
+// redundant contacts share a load decides how much friction each can bear.
+Eigen::VectorXd leastNorm(const Eigen::MatrixXd& Jn, const Eigen::MatrixXd& inverse_inertia,
+                          const Eigen::VectorXd& lambda) {
+  const Eigen::MatrixXd D = Jn * inverse_inertia * Jn.transpose();
+  Eigen::MatrixXd regular = D;
+  regular.diagonal().array() += kContactCompliance * std::max(D.size() > 0 ? D.diagonal().maxCoeff() : 0.0, 1e-300);
+  Eigen::VectorXd out;
+  const LcpReport report = solveLcp(regular, -(D * lambda), out);
+  return report.solved ? out : lambda;
+}
+
+}  // namespace
+
+struct ReferenceSolver::Impl {
+  StepProblem* problem = nullptr;
+  std::unique_ptr<StressSystem> system;
+  Eigen::IncompleteCholesky<double> cholesky;
+  Eigen::MatrixXd inverse_inertia;  // M_S^-1, block diagonal
+  Eigen::MatrixXd response;         // of the free bodies to impulses on them, the liquid implicit; made when needed
+
+  // Unknowns (x, y) with impulses y >= 0 of Jacobian Jc; forces f_v on the bodies, velocities `bias` of the contacts.
+  CoupledReport minimise(const StepVector& rhs, const Eigen::VectorXd& body_forces, const Eigen::MatrixXd& Jc,
+                         const Eigen::VectorXd& bias, const CoupledOptions& options, Eigen::VectorXd& unknowns,
+                         StepVector& x);
+  // The friction problem: (s, p, f) with the other forces on the bodies given.
+  CoupledReport minimiseFriction(const StepVector& rhs, const Eigen::VectorXd& body_forces, const ContactRows& contacts,
+                                 const Eigen::VectorXd& radius, const CoupledOptions& options, Eigen::VectorXd& unknowns,
+                                 Eigen::VectorXd& f, StepVector& x);
+  CoupledReport computeResponse();
+  double residual(const StepVector& rhs, const Eigen::VectorXd& contact_forces, const StepVector& x) const;
+};
+
+double ReferenceSolver::Impl::residual(const StepVector& rhs, const Eigen::VectorXd& contact_forces,
+                                       const StepVector& x) const {
+  StepVector from = x, r;
+  for (std::size_t b = 0; b < problem->bodies->size(); ++b) {
+    if (problem->free_index[b] < 0) from.bodies[b].setZero();
+  }
+  problem->apply(from, r);
+  for (int a = 0; a < 3; ++a) {
+    for (std::size_t i = 0; i < r.velocity[a].size(); ++i) r.velocity[a][i] -= rhs.velocity[a][i];
+  }
+  for (std::size_t i = 0; i < r.pressure.size(); ++i) r.pressure[i] -= rhs.pressure[i];
+  scatterBodies(*problem, gatherBodies(*problem, r.bodies) - gatherBodies(*problem, rhs.bodies) - contact_forces, r.bodies);
+  const double scale = stepNorm(*problem, rhs);
+  return scale > 0.0 ? stepNorm(*problem, r) / scale : 0.0;
+}
+
+CoupledReport ReferenceSolver::Impl::minimise(const StepVector& rhs, const Eigen::VectorXd& body_forces,
+                                              const Eigen::MatrixXd& Jc, const Eigen::VectorXd& bias,
+                                              const CoupledOptions& options, Eigen::VectorXd& unknowns, StepVector& x) {
+  const StressSystem& s = *system;
+  const Eigen::Index n = s.unknowns(), k = Jc.rows();
+  const Eigen::VectorXd f = s.faceForces(rhs);
+  const Eigen::VectorXd v_free = inverse_inertia * body_forces;
+  Eigen::VectorXd b(n + k);
+  b.head(n) = s.G * s.inverse_mass.cwiseProduct(f) + s.J * v_free - s.flux(rhs);
+  b.tail(k) = -Jc * v_free - bias;
+  const Eigen::MatrixXd contact_block = Jc * inverse_inertia * Jc.transpose();
+  const double largest = k > 0 ? std::max(contact_block.diagonal().maxCoeff(), 1e-300) : 0.0;
+  const double compliance = kContactCompliance * largest;
+  const auto apply = [&](const Eigen::VectorXd& from, Eigen::VectorXd& to) {
+    const Eigen::VectorXd v = inverse_inertia * (s.J.transpose() * from.head(n) - Jc.transpose() * from.tail(k));
+    to.resize(n + k);
+    to.head(n) = s.A * from.head(n) + s.J * v;
+    to.tail(k) = -Jc * v + compliance * from.tail(k);
+  };
+  const auto precondition = [&](const Eigen::VectorXd& from, Eigen::VectorXd& to) {
+    if (from.size() > 0) to = cholesky.solve(from);
+  };
+  const double norm = k > 0 ? contact_block.trace() : 1.0;
+  CoupledReport report;
+  report.solves = 1;
+  MprgpOptions mprgp;
+  mprgp.tolerance = options.tolerance;
+  for (int it = 0; it < kMaximumTightenings; ++it, mprgp.tolerance *= kTightening) {
+    mprgp.maximum_iterations = kMaximumIterations - report.iterations;
+    const MprgpReport done = solveMprgp(apply, precondition, norm, b, n, mprgp, unknowns);
+    report.iterations += done.iterations;
+    const Eigen::VectorXd contact_forces = Jc.transpose() * unknowns.tail(k);
+    const Eigen::VectorXd v = inverse_inertia * (body_forces - s.J.transpose() * unknowns.head(n) + contact_forces);
+    scatterBodies(*problem, v, x.bodies);
+    s.velocityAndPressure(unknowns.head(n), f, x);
+    StepVector forced = rhs;
+    scatterBodies(*problem, body_forces, forced.bodies);
+    report.residual = residual(forced, contact_forces, x);
+    if (done.converged && report.residual <= options.tolerance) {
+      report.status = CoupledReport::Status::kConverged;
+      return report;
+    }
+    if (report.iterations >= kMaximumIterations) break;
+  }
+  std::ostringstream text;
+  text << "MPRGP stopped at a relative residual of " << report.residual << " after " << report.iterations
+       << " iterations; wanted " << options.tolerance;
+  report.message = text.str();
+  report.status = CoupledReport::Status::kNotConverged;
+  return report;
+}
+
+CoupledReport ReferenceSolver::Impl::computeResponse() {
+  CoupledReport report;
+  report.status = CoupledReport::Status::kConverged;
+  const Eigen::Index n = problem->bodyUnknowns();
+  if (response.size() > 0 || n == 0) return report;
+  Eigen::MatrixXd K(n, n);
+  StepVector rhs, x;
+  rhs.resize(problem->grid.lattice, problem->bodies->size());
+  rhs.setZero();
+  x = rhs;
+  CoupledOptions options;
+  options.tolerance = kResponseTolerance;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Eigen::VectorXd impulse = Eigen::VectorXd::Unit(n, i);
+    scatterBodies(*problem, impulse, rhs.bodies);
+    Eigen::VectorXd unknowns = Eigen::VectorXd::Zero(system->unknowns());
+    const CoupledReport column =
+        minimise(rhs, impulse, Eigen::MatrixXd(0, n), Eigen::VectorXd(0), options, unknowns, x);
+    report.iterations += column.iterations;
+    ++report.solves;
+    if (column.status != CoupledReport::Status::kConverged) {
+      report.status = column.status;
+      report.message = column.message;
+      return report;
+    }
+    K.col(i) = gatherBodies(*problem, x.bodies);
+  }
+  response = 0.5 * (K + K.transpose());
+  return report;
+}
+
+CoupledReport ReferenceSolver::Impl::minimiseFriction(const StepVector& rhs, const Eigen::VectorXd& body_forces,
+                                                      const ContactRows& contacts, const Eigen::VectorXd& radius,
+                                                      const CoupledOptions& options, Eigen::VectorXd& unknowns,
+                                                      Eigen::VectorXd& f, StepVector& x) {
+  CoupledReport report = computeResponse();
+  if (report.status != CoupledReport::Status::kConverged) return report;
+  const Eigen::Index m = contacts.count();
+  const Eigen::MatrixXd Jt = contacts.J.bottomRows(2 * m);
+  double compliance = 0.0;
+  const Eigen::MatrixXd D = contactResponse(contacts, response, compliance).bottomRightCorner(2 * m, 2 * m);
+  const Eigen::MatrixXd none(0, problem->bodyUnknowns());
+  for (int it = 0; it < kMaximumCorrections; ++it) {
+    const CoupledReport part = minimise(rhs, body_forces + Jt.transpose() * f, none, Eigen::VectorXd(0), options, unknowns, x);
+    report.iterations += part.iterations;
+    report.solves += part.solves;
+    report.residual = part.residual;
+    report.status = part.status;
+    report.message = part.message;
+    if (part.status != CoupledReport::Status::kConverged) return report;
+    const Eigen::VectorXd w = Jt * gatherBodies(*problem, x.bodies) + contacts.bias.tail(2 * m) + compliance * f;
+    Eigen::VectorXd next = f;
+    const DiscQpReport discs = solveDiscQp(D, w - D * f, radius, kSmallTolerance, next);
+    // Of redundant contacts only what they do to the bodies is determined.
+    const double change = (Jt.transpose() * (next - f)).norm();
+    const double push = (Jt.transpose() * next).norm();
+    f = next;
+    if (discs.solved && change <= kLawFactor * options.tolerance * std::max(push, 1e-300)) return report;
+  }
+  report.status = CoupledReport::Status::kNotConverged;
+  report.message = "the friction problem did not settle";
+  return report;
+}
+
+ReferenceSolver::ReferenceSolver() : impl_(std::make_unique<Impl>()) {}
+ReferenceSolver::~ReferenceSolver() = default;
+
+void ReferenceSolver::prepare(StepProblem& problem) {
+  impl_->problem = &problem;
+  impl_->system = std::make_unique<StressSystem>(problem);
+  if (impl_->system->unknowns() > 0) impl_->cholesky.compute(impl_->system->A);
+  impl_->response.resize(0, 0);
+  const Eigen::Index n = problem.bodyUnknowns();
+  impl_->inverse_inertia = Eigen::MatrixXd::Zero(n, n);
+  for (std::size_t b = 0; b < problem.free.size(); ++b) {
+    impl_->inverse_inertia.block<6, 6>(6 * b, 6 * b) = problem.inertia[b].inverse();
+  }
+}
+
+CoupledReport ReferenceSolver::solve(const StepVector& rhs, const CoupledOptions& options, StepVector& x) {
+  ContactRows none;
+  none.J.resize(0, impl_->problem->bodyUnknowns());
+  Eigen::VectorXd r;
+  return solveWithContacts(rhs, none, options, x, r);
+}
+
+CoupledReport ReferenceSolver::solveWithContacts(const StepVector& rhs, const ContactRows& contacts,
+                                                 const CoupledOptions& options, StepVector& x, Eigen::VectorXd& r) {
+  Impl& p = *impl_;
+  const StressSystem& s = *p.system;
+  const Eigen::Index n = s.unknowns(), m = contacts.count();
+  if (r.size() != 3 * m) r = Eigen::VectorXd::Zero(3 * m);
+  const Eigen::MatrixXd Jn = contacts.J.topRows(m), Jt = contacts.J.bottomRows(2 * m);
+  const Eigen::VectorXd forces = gatherBodies(*p.problem, rhs.bodies);
+  const bool frictional = m > 0 && contacts.friction.maxCoeff() > 0.0;
+  if (!frictional) r.tail(2 * m).setZero();
+  const Eigen::VectorXd start = s.unknownsOf(x, gatherBodies(*p.problem, x.bodies));
+
+  CoupledReport report;
+  Eigen::VectorXd unknowns(n + m);
+  unknowns << start, r.head(m);
+  double change = 0.0;
+  for (int round = 0; round < options.maximum_rounds; ++round) {
+    const Eigen::VectorXd before = r;
+    CoupledReport part =
+        p.minimise(rhs, forces + Jt.transpose() * r.tail(2 * m), Jn, contacts.bias.head(m), options, unknowns, x);
+    r.head(m) = leastNorm(Jn, p.inverse_inertia, unknowns.tail(m));
+    if (part.status == CoupledReport::Status::kConverged && frictional) {
+      ++report.friction_iterations;
+      // It goes on from the stresses and pressures just found.
+      Eigen::VectorXd liquid = unknowns.head(n), f = r.tail(2 * m);
+      CoupledReport second = p.minimiseFriction(rhs, forces + Jn.transpose() * r.head(m), contacts,
+                                                contacts.friction.cwiseProduct(r.head(m)), options, liquid, f, x);
+      unknowns.head(n) = liquid;
+      r.tail(2 * m) = f;
+      second.iterations += part.iterations;
+      second.solves += part.solves;
+      part = second;
+    }
+    report.iterations += part.iterations;
+    report.solves += part.solves;
+    report.residual = part.residual;
+    report.status = part.status;
+    report.message = part.message;
+    if (part.status != CoupledReport::Status::kConverged || !frictional) return report;
+    const Eigen::VectorXd push = contacts.J.transpose() * r;
+    change = (push - contacts.J.transpose() * before).norm() / std::max(push.norm(), 1e-300);
+    if (change <= kLawFactor * options.tolerance) return report;
+  }
+  std::ostringstream text;
+  text << "staggered projections of " << m << " contacts stopped after " << options.maximum_rounds
+       << " alternations; the impulses still change by " << change << " of the largest";
+  report.message = text.str();
+  report.status = CoupledReport::Status::kNotConverged;
+  return report;
+}
+
+}  // namespace monolith

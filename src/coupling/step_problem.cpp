@@ -1,0 +1,188 @@
+#include "coupling/step_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace monolith {
+namespace {
+
+// From this viscous number on a time step resolves the film between a body and the nearest faces: no slip there.
+// Below, the liquid next to the body is free to slip and viscosity only drags it along.
+constexpr double kStickingNumber = 0.05;
+// Flux that a sealed region cannot take up, relative to the fluxes through its boundary: above, the motions are at fault,
+// below, round-off.
+constexpr double kFluxTolerance = 1e-7;
+
+}  // namespace
+
+void StepProblem::assemble(SolidFractions& solids, const std::vector<RigidBody>& all_bodies,
+                           const std::vector<double>& liquid_distance, double density, double viscosity, double step) {
+  bodies = &all_bodies;
+  dt = step;
+  viscous_number = viscosity * dt / (density * grid.h * grid.h);
+  impulse_scale = density * grid.cellVolume();
+  pressure_scale = density * grid.h / dt;
+
+  sticking.clear();
+  if (viscous_number >= kStickingNumber) {
+    attachStickingLiquid(grid, solids, sticking);
+    for (StickingLiquid& s : sticking) {
+      s.fraction *= liquidPart(liquid_distance[s.face - grid.lattice.stride[s.axis]], liquid_distance[s.face]);
+    }
+  }
+  const StokesGeometry geometry{&solids.fluid, &solids.distance, &liquid_distance};
+  buildCoefficients(grid.lattice, geometry, viscous_number, coefficients);
+  buildBodyRows(grid, solids, all_bodies, geometry, coefficients, rows);
+  enclosed = moveEnclosedRows(grid, coefficients, liquid_distance, rows);
+  if (coarse.empty()) coarse.resize(1);
+  buildCoarseLevels(grid.lattice, geometry, viscous_number, coarse);
+  op_.set(&coefficients, &rows);
+
+  std::vector<char> moves(all_bodies.size(), 0);
+  free.clear();
+  free_index.assign(all_bodies.size(), -1);
+  twist_scale.clear();
+  inertia.clear();
+  solid_inertia.clear();
+  for (std::size_t b = 0; b < all_bodies.size(); ++b) {
+    if (all_bodies[b].motion != BodyMotion::kFree) continue;
+    moves[b] = 1;
+    free_index[b] = static_cast<int>(free.size());
+    free.push_back(static_cast<int>(b));
+    Matrix6d M = Matrix6d::Zero();
+    M.topLeftCorner<3, 3>() = all_bodies[b].mass * Eigen::Matrix3d::Identity();
+    M.bottomRightCorner<3, 3>() = all_bodies[b].worldInertia();
+    M /= impulse_scale;
+    inertia.push_back(M);
+    solid_inertia.push_back(M);
+    // A light body moves with the liquid that it displaces: that is its scale then.
+    double displaced = 0.0;
+    for (const double part : solids.bodies[b].cell) displaced += part;
+    const double radius2 = std::pow(3.0 * displaced / (4.0 * M_PI), 2.0 / 3.0) * grid.h * grid.h;
+    Vector6d scale;
+    for (int d = 0; d < 6; ++d) scale[d] = std::sqrt(M(d, d) + displaced * (d < 3 ? 1.0 : 0.4 * radius2));
+    twist_scale.push_back(scale);
+  }
+  for (const StickingLiquid& s : sticking) {
+    if (free_index[s.body] < 0) continue;
+    const Vector6d row = velocityRow(s.axis, s.position, all_bodies[s.body].p_WBcm);
+    inertia[free_index[s.body]] += s.fraction * row * row.transpose();
+  }
+  regions = findPressureRegions(coefficients, rows, moves);
+}
+
+// It has moved with its body: its momentum is not that of the face, which is slower.
+double StepProblem::stickingVelocity(const StickingLiquid& s, const Vector6d& row, const Eigen::Vector3d& gravity) const {
+  return row.dot((*bodies)[s.body].twist) + dt * gravity[s.axis];
+}
+
+Vector6d StepProblem::enclosedImpulse(const EnclosedRow& row, const Eigen::Vector3d& gravity) const {
+  return (dt / grid.h * gravity.dot(row.offset)) * row.coefficient;
+}
+
+std::string StepProblem::rightSide(const FaceField<double>& free_velocity, const std::vector<Vector6d>& free_twists,
+                                   const Eigen::Vector3d& gravity, StepVector& rhs) const {
+  const Lattice& l = grid.lattice;
+  rhs.resize(l, bodies->size());
+  rhs.setZero();
+  // What the prescribed motions do.
+  StepVector prescribed;
+  prescribed.resize(l, bodies->size());
+  bool any_prescribed = false;
+  for (std::size_t b = 0; b < bodies->size(); ++b) {
+    if (free_index[b] >= 0 || free_twists[b].isZero(0.0)) continue;
+    prescribed.bodies[b] = free_twists[b];
+    any_prescribed = true;
+  }
+  if (any_prescribed) {
+    op_.apply(prescribed, rhs);
+    for (auto& field : rhs.velocity) {
+      clearHalo(l, field);
+      for (double& r : field) r = -r;
+    }
+    clearHalo(l, rhs.pressure);
+    for (double& r : rhs.pressure) r = -r;
+    for (auto& force : rhs.bodies) force = -force;
+  }
+  for (int a = 0; a < 3; ++a) {
+    std::vector<double> mass = coefficients.mass[a];
+    clearHalo(l, mass);
+    for (std::size_t i = 0; i < l.size; ++i) rhs.velocity[a][i] += mass[i] * free_velocity[a][i];
+  }
+  for (std::size_t i = 0; i < free.size(); ++i) rhs.bodies[free[i]] += solid_inertia[i] * free_twists[free[i]];
+  for (const StickingLiquid& s : sticking) {
+    const Vector6d row = velocityRow(s.axis, s.position, (*bodies)[s.body].p_WBcm);
+    rhs.bodies[s.body] += s.fraction * stickingVelocity(s, row, gravity) * row;
+  }
+  for (const EnclosedRow& row : enclosed) rhs.bodies[row.body] += enclosedImpulse(row, gravity);
+  for (std::size_t b = 0; b < bodies->size(); ++b) {
+    if (free_index[b] < 0) rhs.bodies[b].setZero();
+  }
+  return balanceSealedRegions(rhs.pressure);
+}
+
+// Sealed regions: the prescribed flux must leave the volume as it is; round-off is removed from the right side.
+std::string StepProblem::balanceSealedRegions(std::vector<double>& flux) const {
+  for (const PressureRegion& region : regions) {
+    if (!region.null_mode) continue;
+    double sum = 0.0, size = 0.0;
+    for (const auto c : region.cells) {
+      sum += flux[c];
+      size += std::abs(flux[c]);
+    }
+    if (std::abs(sum) > kFluxTolerance * size && size > 1e-12) {
+      std::ostringstream text;
+      text << "a sealed region of liquid (" << region.cells.size() << " cells, "
+           << static_cast<double>(region.cells.size()) * grid.cellVolume() << " m^3) would have to change its volume by "
+           << sum * grid.h * grid.h << " m^3/s under the prescribed motion of";
+      std::vector<char> named(bodies->size(), 0);
+      std::vector<char> inside(grid.lattice.size, 0);
+      for (const auto c : region.cells) inside[c] = 1;
+      for (const BodyRow& row : rows.divergence) {
+        if (!inside[row.sample] || named[row.body] || free_index[row.body] >= 0) continue;
+        named[row.body] = 1;
+        text << " '" << (*bodies)[row.body].name << "'";
+      }
+      text << "; an incompressible liquid cannot";
+      return text.str();
+    }
+    for (const auto c : region.cells) flux[c] -= sum / static_cast<double>(region.cells.size());
+  }
+  return {};
+}
+
+void StepProblem::apply(StepVector& x, StepVector& y) const {
+  op_.apply(x, y);
+  for (std::size_t b = 0; b < bodies->size(); ++b) {
+    const int i = free_index[b];
+    if (i < 0) {
+      y.bodies[b].setZero();
+    } else {
+      y.bodies[b] += inertia[i] * x.bodies[b];
+    }
+  }
+  for (auto& field : y.velocity) clearHalo(grid.lattice, field);
+  clearHalo(grid.lattice, y.pressure);
+}
+
+void StepProblem::results(StepVector& x, const Eigen::Vector3d& gravity, std::vector<Wrench>& liquid,
+                          double& divergence) const {
+  StepVector y;
+  op_.apply(x, y);
+  divergence = 0.0;
+  for (const double d : y.pressure) divergence = std::max(divergence, std::abs(d) / grid.h);
+  for (const StickingLiquid& s : sticking) {
+    const Vector6d row = velocityRow(s.axis, s.position, (*bodies)[s.body].p_WBcm);
+    y.bodies[s.body] += s.fraction * (row.dot(x.bodies[s.body]) - stickingVelocity(s, row, gravity)) * row;
+  }
+  for (const EnclosedRow& row : enclosed) y.bodies[row.body] -= enclosedImpulse(row, gravity);
+  const double force_scale = impulse_scale / dt;
+  liquid.assign(bodies->size(), Wrench());
+  for (std::size_t b = 0; b < bodies->size(); ++b) {
+    liquid[b].force = -force_scale * y.bodies[b].head<3>();
+    liquid[b].torque = -force_scale * y.bodies[b].tail<3>();
+  }
+}
+
+}  // namespace monolith

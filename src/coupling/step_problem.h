@@ -1,0 +1,77 @@
+#pragma once
+// One step as a linear system, whichever way it is solved: liquid velocity U, twists v of the free bodies, pressure p
+// (DESIGN 1.2 with the stress eliminated),
+//
+//   [ A_uu  A_uv  -C_u^T ] [ U  ]   [ m U*                  ]
+//   [ A_vu  A_vv  -C_v^T ] [ v  ] = [ M v* + J^T r          ]     A = mass + D^T W D over (U, v)
+//   [ -C_u  -C_v         ] [ p^ ]   [ flux that is prescribed ]
+//
+// in the units of coupling/stokes_coefficients.h; bodies by M^ = M/(rho h^3). Symmetric, indefinite. r are the impulses
+// of the contacts, J their Jacobian (coupling/contact_rows.h). Liquid that sticks to a body counts in its inertia
+// (coupling/sticking_liquid.h).
+
+#include <string>
+#include <vector>
+
+#include "coupling/enclosed_rows.h"
+#include "coupling/pressure_regions.h"
+#include "coupling/solid_fractions.h"
+#include "coupling/step_operator.h"
+#include "coupling/sticking_liquid.h"
+#include "coupling/stokes_coefficients.h"
+#include "rigid/integration.h"
+
+namespace monolith {
+
+class StepProblem {
+ public:
+  explicit StepProblem(const MacGrid& grid) : grid(grid) {}
+
+  // Geometry and material; liquid_distance in cell widths with its halo filled. Bodies must outlive the problem; in `solids` the
+  // liquid that sticks to the bodies is moved to them.
+  void assemble(SolidFractions& solids, const std::vector<RigidBody>& all_bodies,
+                const std::vector<double>& liquid_distance, double density, double viscosity, double step);
+
+  // The right side with r = 0. free_velocity: u*, gravity included. free_twists: v* of free bodies, the prescribed twist
+  // of the others. gravity acts on the liquid that sticks to bodies. Returns what is wrong, if there is no
+  // solution: a sealed region whose volume the prescribed motions would change.
+  [[nodiscard]] std::string rightSide(const FaceField<double>& free_velocity, const std::vector<Vector6d>& free_twists,
+                                      const Eigen::Vector3d& gravity, StepVector& rhs) const;
+
+  // y = operator * x, inertia of the free bodies included; rows of the other bodies are zero, and so are the halos.
+  void apply(StepVector& x, StepVector& y) const;
+
+  // Wrench of the liquid on every body (mean over the step, at its centre of mass) and largest divergence (1/s), of a
+  // solution x that holds the twists of all bodies.
+  void results(StepVector& x, const Eigen::Vector3d& gravity, std::vector<Wrench>& liquid, double& divergence) const;
+
+  Eigen::Index bodyUnknowns() const { return static_cast<Eigen::Index>(6 * free.size()); }
+
+  MacGrid grid;
+  StaggeredCoefficients<double> coefficients;
+  BodyRows rows;
+  std::vector<PressureRegion> regions;
+  std::vector<StaggeredCoefficients<float>> coarse;  // multigrid levels; [0] is left empty
+  const std::vector<RigidBody>* bodies = nullptr;
+  double viscous_number = 0.0;
+  double impulse_scale = 1.0;                // rho h^3: dimensionless impulse -> N s
+  double pressure_scale = 1.0;               // rho h/dt: p^ -> Pa
+  double dt = 1.0;
+  std::vector<int> free;                     // bodies whose twist is unknown
+  std::vector<int> free_index;               // body -> place in `free`, or -1
+  std::vector<Vector6d> twist_scale;         // of free bodies: sqrt of the inertia that they feel, liquid included
+  std::vector<Matrix6d> inertia;             // M^ of free bodies with the liquid that sticks to them
+  std::vector<Matrix6d> solid_inertia;       // M^ of free bodies by themselves
+  std::vector<StickingLiquid> sticking;      // fraction is that of liquid: times W_L
+  std::vector<EnclosedRow> enclosed;         // rows of contacts, which liquid reaches from their rim
+
+ private:
+  double stickingVelocity(const StickingLiquid& s, const Vector6d& row, const Eigen::Vector3d& gravity) const;
+  // Dimensionless impulse on a body by the weight of the liquid between a contact and its rim.
+  Vector6d enclosedImpulse(const EnclosedRow& row, const Eigen::Vector3d& gravity) const;
+  std::string balanceSealedRegions(std::vector<double>& flux) const;
+
+  mutable StepOperator op_;
+};
+
+}  // namespace monolith

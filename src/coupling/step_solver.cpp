@@ -1,0 +1,37 @@
+#include "coupling/step_solver.h"
+
+#include <cmath>
+
+namespace monolith {
+
+Eigen::MatrixXd contactResponse(const ContactRows& contacts, const Eigen::MatrixXd& K, double& compliance) {
+  Eigen::MatrixXd D = contacts.J * K * contacts.J.transpose();
+  D = 0.5 * (D + D.transpose()).eval();
+  compliance = kContactCompliance * std::max(D.size() > 0 ? D.diagonal().maxCoeff() : 0.0, 1e-300);
+  D.diagonal().array() += compliance;
+  return D;
+}
+
+Eigen::VectorXd gatherBodies(const StepProblem& problem, const std::vector<Vector6d>& all) {
+  Eigen::VectorXd out(problem.bodyUnknowns());
+  for (std::size_t i = 0; i < problem.free.size(); ++i) out.segment<6>(6 * i) = all[problem.free[i]];
+  return out;
+}
+
+void scatterBodies(const StepProblem& problem, const Eigen::VectorXd& free, std::vector<Vector6d>& all) {
+  for (std::size_t i = 0; i < problem.free.size(); ++i) all[problem.free[i]] = free.segment<6>(6 * i);
+}
+
+double stepNorm(const StepProblem& problem, const StepVector& r) {
+  double sum = 0.0;
+  for (const auto& field : r.velocity) {
+    for (const double v : field) sum += v * v;
+  }
+  for (const double v : r.pressure) sum += v * v;
+  for (std::size_t i = 0; i < problem.free.size(); ++i) {
+    sum += r.bodies[problem.free[i]].cwiseQuotient(problem.twist_scale[i]).squaredNorm();
+  }
+  return std::sqrt(sum);
+}
+
+}  // namespace monolith

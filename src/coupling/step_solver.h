@@ -1,0 +1,58 @@
+#pragma once
+// What the solvers of a step have in common (DESIGN 2): `fast`, `direct` and `reference` answer the same two questions.
+// x holds the twists of all bodies; those that are not free are left alone and count as zero (their motion is in the right
+// side already).
+
+#include <string>
+
+#include "coupling/contact_rows.h"
+#include "coupling/step_problem.h"
+
+namespace monolith {
+
+struct CoupledOptions {
+  double tolerance = 1e-6;       // |b - A x|_2 relative to |b|_2
+  int maximum_iterations = 200;  // Krylov iterations of one linear solve of `fast`
+  int maximum_rounds = 30;       // of the contacts' states (fast), staggered projections (reference)
+};
+
+struct CoupledReport {
+  enum class Status { kNotRun, kConverged, kNotConverged, kInconsistent };
+  Status status = Status::kNotRun;
+  std::string message;
+  int iterations = 0;           // of the linear solver; `direct`: none
+  int solves = 0;               // with the whole liquid
+  int friction_iterations = 0;  // staggered projections, or rounds between pressure and contact
+  double residual = 0.0;        // relative, recomputed
+  double divergence = 0.0;      // 1/s, largest over cells with pressure
+};
+
+class StepSolver {
+ public:
+  virtual ~StepSolver() = default;
+  // The problem must outlive its use; called again whenever it has been assembled anew.
+  virtual void prepare(StepProblem& problem) = 0;
+  // operator * x = rhs, without contact. x: guess on entry, solution if the report says so.
+  [[nodiscard]] virtual CoupledReport solve(const StepVector& rhs, const CoupledOptions& options, StepVector& x) = 0;
+  // With contacts, unified: pressure, viscosity, bodies, non-penetration and friction. r: start on entry, impulses on return.
+  [[nodiscard]] virtual CoupledReport solveWithContacts(const StepVector& rhs, const ContactRows& contacts,
+                                                        const CoupledOptions& options, StepVector& x,
+                                                        Eigen::VectorXd& r) = 0;
+};
+
+// Impulses of contacts against the inertia and the regularisation that every solver uses.
+// Compliance of a contact relative to that of its bodies: keeps redundant contacts (four corners of a box) solvable
+// and unique, at a speed far below any tolerance.
+constexpr double kContactCompliance = 1e-9;
+
+// J K J^T with that compliance added; `compliance` returns it. K: response of the twists of the free bodies to impulses on them.
+Eigen::MatrixXd contactResponse(const ContactRows& contacts, const Eigen::MatrixXd& K, double& compliance);
+
+// Twists of the free bodies <-> one vector.
+Eigen::VectorXd gatherBodies(const StepProblem& problem, const std::vector<Vector6d>& all);
+void scatterBodies(const StepProblem& problem, const Eigen::VectorXd& free, std::vector<Vector6d>& all);
+
+// |r| over velocities, pressures and, in the scale of their inertia, bodies.
+double stepNorm(const StepProblem& problem, const StepVector& r);
+
+}  // namespace monolith

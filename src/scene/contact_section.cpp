@@ -1,0 +1,61 @@
+#include <algorithm>
+
+#include "scene/scene_sections.h"
+
+namespace monolith {
+namespace {
+
+constexpr char kWalls[] = "walls";
+
+// Names that a pair may use: bodies, their materials and the walls.
+std::vector<std::string> surfaceNames(const std::vector<BodyDescription>& bodies) {
+  std::vector<std::string> names{kWalls};
+  for (const BodyDescription& body : bodies) {
+    names.push_back(body.name);
+    if (!body.material.empty()) names.push_back(body.material);
+  }
+  return names;
+}
+
+void readLaw(const YamlMap& map, double& friction, double& restitution) {
+  map.read("friction", friction, Range::kNotNegative);
+  map.read("restitution", restitution, Range::kNotNegative);
+  if (restitution > 1.0) map.fail("restitution", "at most 1, the speed of separation over that of approach");
+}
+
+}  // namespace
+
+void readContact(const YAML::Node& node, const std::vector<BodyDescription>& bodies, ContactDescription& contact,
+                 Violations& violations) {
+  const YamlMap map(node, "contact", {"friction", "restitution", "pairs"}, violations);
+  readLaw(map, contact.friction, contact.restitution);
+  if (!map.has("pairs")) return;
+  const YAML::Node pairs = map.get("pairs");
+  if (!pairs.IsSequence()) return map.fail("pairs", "a list of {between: [a, b], friction: mu, restitution: e}");
+  const std::vector<std::string> names = surfaceNames(bodies);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const std::string path = "contact.pairs[" + std::to_string(i) + "]";
+    const YamlMap entry(pairs[i], path, {"between", "friction", "restitution"}, violations);
+    entry.require("between", "two names of bodies or materials, or \"walls\"");
+    ContactDescription::Pair pair;
+    pair.friction = contact.friction;
+    pair.restitution = contact.restitution;
+    readLaw(entry, pair.friction, pair.restitution);
+    if (!entry.has("between")) continue;
+    const YAML::Node between = entry.get("between");
+    if (!between.IsSequence() || between.size() != 2 || !between[0].IsScalar() || !between[1].IsScalar()) {
+      entry.fail("between", "two names of bodies or materials, or \"walls\"");
+      continue;
+    }
+    pair.a = between[0].as<std::string>();
+    pair.b = between[1].as<std::string>();
+    for (const std::string& name : {pair.a, pair.b}) {
+      if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+      entry.fail("between", "names of bodies or materials of this scene, or \"walls\"; the nearest to " + name + " is " +
+                                nearestWord(name, names));
+    }
+    contact.pairs.push_back(pair);
+  }
+}
+
+}  // namespace monolith
