@@ -17,6 +17,8 @@ bool runHydrostatics();
 bool runSettling();
 // Liquid volume and penetration over 60 s of the drop scene.
 bool runVolume(double seconds);
+// A box on a slope, dry and under liquid: friction angle within 0.1 degree, no drift below it.
+bool runSlope();
 // Seconds per step and stage of the drop scene at several sizes and thread counts.
 bool runBench();
 

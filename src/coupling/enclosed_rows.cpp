@@ -52,10 +52,19 @@ Nearest findNearest(const Lattice& l, const std::vector<std::uint8_t>& has_press
 
 }  // namespace
 
-std::vector<EnclosedRow> moveEnclosedRows(const MacGrid& grid, const StaggeredCoefficients<double>& coefficients,
-                                          const std::vector<double>& liquid_distance, BodyRows& rows) {
-  std::vector<EnclosedRow> moved;
-  if (rows.enclosed.empty()) return moved;
+std::vector<EnclosedWeight> moveEnclosedRows(const MacGrid& grid, const SolidFractions& solids,
+                                             const std::vector<RigidBody>& bodies,
+                                             const StaggeredCoefficients<double>& coefficients,
+                                             const std::vector<double>& liquid_distance, BodyRows& rows) {
+  std::vector<EnclosedWeight> weights;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    for (const WallPart& part : solids.bodies[b].at_walls) {
+      if (!(liquid_distance[part.cell] < 0.0)) continue;
+      weights.push_back({static_cast<int>(b), part.fraction * velocityRow(part.axis, part.position, bodies[b].p_WBcm),
+                         -grid.h * Eigen::Vector3d::Unit(part.axis)});
+    }
+  }
+  if (rows.enclosed.empty()) return weights;
   const Lattice& l = grid.lattice;
   // Along the contact first: through a body only if the contact has no rim.
   std::vector<char> contact(l.size, 0);
@@ -69,10 +78,10 @@ std::vector<EnclosedRow> moveEnclosedRows(const MacGrid& grid, const StaggeredCo
     if (q < 0) continue;
     rows.divergence.push_back({q, row.body, row.coefficient});
     const Cell& steps = nearest.steps[row.sample];
-    moved.push_back({row.body, row.coefficient, grid.h * Eigen::Vector3d(steps[0], steps[1], steps[2])});
+    weights.push_back({row.body, row.coefficient, grid.h * Eigen::Vector3d(steps[0], steps[1], steps[2])});
   }
   rows.enclosed.clear();
-  return moved;
+  return weights;
 }
 
 }  // namespace monolith

@@ -5,24 +5,28 @@
 // a cell c therefore act on the nearest cell q with pressure, reached along the contact, with the weight of the liquid
 // between,
 //   p_c = p_q + rho g . (x_c - x_q),
-// and what the body's motion opens there is filled from q. Buoyancy of a resting body is that of Archimedes.
+// and what the body's motion opens there is filled from q. Next to a wall the pressure's last sample is half a cell away; the
+// same weight of liquid makes up for the rest. Buoyancy of a resting body is that of Archimedes.
 
 #include <Eigen/Dense>
 #include <vector>
 
+#include "coupling/solid_fractions.h"
 #include "coupling/stokes_coefficients.h"
 
 namespace monolith {
 
-// A row that was moved, for the constant part of its pressure: p^ = dt/h g . offset.
-struct EnclosedRow {
+// The constant part of a pressure: an impulse coefficient * (dt/h g . offset) on the body.
+struct EnclosedWeight {
   int body = 0;
   Vector6d coefficient = Vector6d::Zero();
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  // x_c - x_q, m
 };
 
 // Moves rows.enclosed of cells below the liquid's surface to rows.divergence; the others meet no liquid and are dropped.
-std::vector<EnclosedRow> moveEnclosedRows(const MacGrid& grid, const StaggeredCoefficients<double>& coefficients,
-                                          const std::vector<double>& liquid_distance, BodyRows& rows);
+std::vector<EnclosedWeight> moveEnclosedRows(const MacGrid& grid, const SolidFractions& solids,
+                                             const std::vector<RigidBody>& bodies,
+                                             const StaggeredCoefficients<double>& coefficients,
+                                             const std::vector<double>& liquid_distance, BodyRows& rows);
 
 }  // namespace monolith

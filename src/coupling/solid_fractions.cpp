@@ -211,6 +211,7 @@ void SolidSampler::close(SolidFractions& out) const {
     }
   }
   for (BodyFractions& f : out.bodies) {
+    f.at_walls.clear();
     for (int a = 0; a < 3; ++a) {
       for (int k = 0; k < f.count[2]; ++k) {
         for (int j = 0; j < f.count[1]; ++j) {
@@ -219,6 +220,11 @@ void SolidSampler::close(SolidFractions& out) const {
             if (fraction == 0.0) continue;
             const auto g = gridIndex(l, {f.low[0] + i, f.low[1] + j, f.low[2] + k}, a);
             if (g < 0 || walls_.fluid[a][g] == 0.0) {
+              const std::array<int, 3> at = {f.low[0] + i, f.low[1] + j, f.low[2] + k};
+              if (g >= 0 && (at[a] == 0 || at[a] == l.n[a])) {
+                f.at_walls.push_back({a, g, at[a] == 0 ? g : g - l.stride[a], fraction,
+                                      grid_.faceCenter(a, at[0], at[1], at[2])});
+              }
               fraction = 0.0;
             } else if (solid[a][g] > 1.0 - kLeastFluid) {
               fraction /= solid[a][g];

@@ -16,12 +16,23 @@
 
 namespace monolith {
 
+// The part of a body in the half of a wall face's control volume that lies in the tank. The face is the wall's, so
+// it is no part of W_Si.
+struct WallPart {
+  int axis = 0;
+  std::ptrdiff_t face = 0;
+  std::ptrdiff_t cell = 0;  // next to it, in the tank
+  double fraction = 0.0;    // of the whole control volume
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+};
+
 // Fractions of one body on the faces of a box of cells; outside the box they are zero.
 struct BodyFractions {
   std::array<int, 3> low{};    // first cell of the box; may lie in a periodic image
   std::array<int, 3> count{};  // cells along each axis
   FaceField<double> face;      // W_Si per axis, box-local index
   std::vector<double> cell;    // part of the cell
+  std::vector<WallPart> at_walls;
 
   std::size_t local(int i, int j, int k) const {
     return static_cast<std::size_t>(i) +

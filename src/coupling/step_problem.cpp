@@ -34,7 +34,7 @@ void StepProblem::assemble(SolidFractions& solids, const std::vector<RigidBody>&
   const StokesGeometry geometry{&solids.fluid, &solids.distance, &liquid_distance};
   buildCoefficients(grid.lattice, geometry, viscous_number, coefficients);
   buildBodyRows(grid, solids, all_bodies, geometry, coefficients, rows);
-  enclosed = moveEnclosedRows(grid, coefficients, liquid_distance, rows);
+  enclosed = moveEnclosedRows(grid, solids, all_bodies, coefficients, liquid_distance, rows);
   if (coarse.empty()) coarse.resize(1);
   buildCoarseLevels(grid.lattice, geometry, viscous_number, coarse);
   op_.set(&coefficients, &rows);
@@ -77,8 +77,8 @@ double StepProblem::stickingVelocity(const StickingLiquid& s, const Vector6d& ro
   return row.dot((*bodies)[s.body].twist) + dt * gravity[s.axis];
 }
 
-Vector6d StepProblem::enclosedImpulse(const EnclosedRow& row, const Eigen::Vector3d& gravity) const {
-  return (dt / grid.h * gravity.dot(row.offset)) * row.coefficient;
+Vector6d StepProblem::enclosedImpulse(const EnclosedWeight& weight, const Eigen::Vector3d& gravity) const {
+  return (dt / grid.h * gravity.dot(weight.offset)) * weight.coefficient;
 }
 
 std::string StepProblem::rightSide(const FaceField<double>& free_velocity, const std::vector<Vector6d>& free_twists,
@@ -115,7 +115,7 @@ std::string StepProblem::rightSide(const FaceField<double>& free_velocity, const
     const Vector6d row = velocityRow(s.axis, s.position, (*bodies)[s.body].p_WBcm);
     rhs.bodies[s.body] += s.fraction * stickingVelocity(s, row, gravity) * row;
   }
-  for (const EnclosedRow& row : enclosed) rhs.bodies[row.body] += enclosedImpulse(row, gravity);
+  for (const EnclosedWeight& weight : enclosed) rhs.bodies[weight.body] += enclosedImpulse(weight, gravity);
   for (std::size_t b = 0; b < bodies->size(); ++b) {
     if (free_index[b] < 0) rhs.bodies[b].setZero();
   }
@@ -176,7 +176,7 @@ void StepProblem::results(StepVector& x, const Eigen::Vector3d& gravity, std::ve
     const Vector6d row = velocityRow(s.axis, s.position, (*bodies)[s.body].p_WBcm);
     y.bodies[s.body] += s.fraction * (row.dot(x.bodies[s.body]) - stickingVelocity(s, row, gravity)) * row;
   }
-  for (const EnclosedRow& row : enclosed) y.bodies[row.body] -= enclosedImpulse(row, gravity);
+  for (const EnclosedWeight& weight : enclosed) y.bodies[weight.body] -= enclosedImpulse(weight, gravity);
   const double force_scale = impulse_scale / dt;
   liquid.assign(bodies->size(), Wrench());
   for (std::size_t b = 0; b < bodies->size(); ++b) {

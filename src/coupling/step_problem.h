@@ -63,12 +63,12 @@ class StepProblem {
   std::vector<Matrix6d> inertia;             // M^ of free bodies with the liquid that sticks to them
   std::vector<Matrix6d> solid_inertia;       // M^ of free bodies by themselves
   std::vector<StickingLiquid> sticking;      // fraction is that of liquid: times W_L
-  std::vector<EnclosedRow> enclosed;         // rows of contacts, which liquid reaches from their rim
+  std::vector<EnclosedWeight> enclosed;         // in contacts, which liquid reaches from their rim
 
  private:
   double stickingVelocity(const StickingLiquid& s, const Vector6d& row, const Eigen::Vector3d& gravity) const;
   // Dimensionless impulse on a body by the weight of the liquid between a contact and its rim.
-  Vector6d enclosedImpulse(const EnclosedRow& row, const Eigen::Vector3d& gravity) const;
+  Vector6d enclosedImpulse(const EnclosedWeight& weight, const Eigen::Vector3d& gravity) const;
   std::string balanceSealedRegions(std::vector<double>& flux) const;
 
   mutable StepOperator op_;
