@@ -1,6 +1,7 @@
 #include "coupling/contact_rows.h"
 
 #include <cmath>
+#include <map>
 
 namespace monolith {
 namespace {
@@ -30,8 +31,11 @@ ContactRows buildContactRows(const StepProblem& problem, const std::vector<Conta
   out.J = Eigen::MatrixXd::Zero(3 * m, problem.bodyUnknowns());
   out.bias = Eigen::VectorXd::Zero(3 * m);
   out.friction = Eigen::VectorXd::Zero(m);
+  std::map<std::pair<int, int>, int> pairs;
   for (Eigen::Index c = 0; c < m; ++c) {
     const Contact& contact = contacts[c];
+    const auto number = static_cast<int>(pairs.size());
+    out.pair.push_back(pairs.try_emplace({contact.body_a, contact.body_b}, number).first->second);
     out.friction[c] = laws[c].friction;
     out.tangents.push_back(tangentBasis(contact.normal));
     const Eigen::Index row[3] = {c, m + 2 * c, m + 2 * c + 1};

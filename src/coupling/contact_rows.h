@@ -29,6 +29,7 @@ struct ContactRows {
   Eigen::VectorXd bias;      // 3m, m/s; normal: non-penetration is (J v + bias)_n >= 0
   Eigen::VectorXd friction;  // m
   std::vector<Eigen::Matrix<double, 3, 2>> tangents;
+  std::vector<int> pair;     // m: contacts of the same two bodies have the same number, from 0 on
 
   Eigen::Index count() const { return friction.size(); }
 };

@@ -149,7 +149,7 @@ CoupledReport DirectSolver::solveWithContacts(const StepVector& rhs, const Conta
   const StepProblem& p = *impl_->problem;
   CoupledReport report = impl_->solve(rhs, options.tolerance, x);
   if (report.status != CoupledReport::Status::kConverged || contacts.count() == 0) return report;
-  double compliance = 0.0;
+  Eigen::VectorXd compliance;
   const Eigen::MatrixXd D = contactResponse(contacts, impl_->K, compliance);
   const Eigen::VectorXd w = contacts.J * gatherBodies(p, x.bodies) + contacts.bias;
   const FrictionReport friction = solveFrictionalContact(D, w, contacts.friction, kSmallTolerance, r);

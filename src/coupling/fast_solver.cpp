@@ -22,6 +22,17 @@ constexpr double kSmallTolerance = 1e-9;
 // Contacts have settled when what they do to the bodies' velocities changes by less than the solve's tolerance times this.
 constexpr double kLawFactor = 10.0;
 constexpr double kLeastSpeed = 1e-10;  // m/s
+constexpr double kLeastCurvature = 1e-8;
+
+// Symmetric rank-one update of the response K so that it gives the change of twists dv that impulses dg were seen to make; left
+// alone where that would cost its definiteness.
+void learnResponse(const Eigen::VectorXd& dg, const Eigen::VectorXd& dv, Eigen::MatrixXd& K) {
+  const Eigen::VectorXd miss = dv - K * dg;
+  const double curvature = miss.dot(dg);
+  if (!(std::abs(curvature) > kLeastCurvature * miss.norm() * dg.norm())) return;
+  const Eigen::MatrixXd next = K + miss * miss.transpose() / curvature;
+  if (curvature > 0.0 || Eigen::LLT<Eigen::MatrixXd>(next).info() == Eigen::Success) K = next;
+}
 
 }  // namespace
 
@@ -39,7 +50,8 @@ struct FastSolver::Impl {
   Eigen::VectorXd scale;  // Krylov unknown = scale * twist
   Eigen::MatrixXd S;      // inertia plus resistance, in Krylov units
   ContactBorder border;   // in Krylov units
-  double compliance = 0.0;
+  Eigen::VectorXd compliance;         // of each contact row
+  Eigen::VectorXd border_compliance;  // of those in the border
   Eigen::PartialPivLU<Eigen::MatrixXd> small;  // S bordered by the contacts
 
   const Lattice& lattice() const { return problem->grid.lattice; }
@@ -99,7 +111,9 @@ struct FastSolver::Impl {
     M.topLeftCorner(n, n) = S;
     M.bottomLeftCorner(k, n) = -border.R;
     M.topRightCorner(n, k) = -border.C;
-    M.bottomRightCorner(k, k).diagonal().setConstant(-compliance);
+    border_compliance.resize(k);
+    for (Eigen::Index i = 0; i < k; ++i) border_compliance[i] = compliance[border.entry[i]];
+    M.bottomRightCorner(k, k).diagonal() = -border_compliance;
     if (M.size() > 0) small.compute(M);
   }
 
@@ -113,7 +127,7 @@ struct FastSolver::Impl {
     const Eigen::Map<const Eigen::VectorXd> v(from.data() + liquidSize(), n);
     const Eigen::Map<const Eigen::VectorXd> y(from.data() + liquidSize() + n, k);
     Eigen::Map<Eigen::VectorXd>(to.data() + liquidSize(), n) -= border.C * y;
-    Eigen::Map<Eigen::VectorXd>(to.data() + liquidSize() + n, k) = -border.R * v - compliance * y;
+    Eigen::Map<Eigen::VectorXd>(to.data() + liquidSize() + n, k) = -border.R * v - border_compliance.cwiseProduct(y);
   }
 
   void precondition(const std::vector<double>& from, std::vector<double>& to) {
@@ -195,9 +209,9 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
   const double rhs_norm = stepNorm(p, rhs_fields);
   const Eigen::Index count = contacts.count();
 
-  // Response of the contacts on the approximate Schur complement.
-  Eigen::MatrixXd D;
-  m.compliance = 0.0;
+  // Response of bodies and contacts on the approximate Schur complement.
+  Eigen::MatrixXd K, D;
+  Eigen::VectorXd last_push, last_twists;
   ContactStates states;
   const auto velocities = [&](const std::vector<double>& from) {
     const Eigen::Map<const Eigen::VectorXd> v(from.data() + m.liquidSize(), m.bodySize());
@@ -206,7 +220,7 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
   if (count > 0) {
     const auto n = m.bodySize();
     const Eigen::VectorXd inverse = m.scale.cwiseInverse();
-    const Eigen::MatrixXd K = inverse.asDiagonal() * m.S.ldlt().solve(Eigen::MatrixXd::Identity(n, n)) * inverse.asDiagonal();
+    K = inverse.asDiagonal() * m.S.ldlt().solve(Eigen::MatrixXd::Identity(n, n)) * inverse.asDiagonal();
     D = contactResponse(contacts, K, m.compliance);
     // One cycle on the whole residual says roughly how the bodies would move without contact.
     m.setBorder(makeBorder(contacts, {std::vector<ContactState>(count, ContactState::kOpen), {}}));
@@ -223,6 +237,8 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
   }
 
   bool lawful = false;
+  bool from_open = count == 0;
+  const std::vector<double> guess(x);
   KrylovReport last;
   for (int round = 0; round < options.maximum_rounds && !lawful; ++round) {
     const ContactBorder border = makeBorder(contacts, states);
@@ -235,7 +251,15 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
       x[tail + i] = start[i];
     }
     last = m.linearSolve(rhs, x, options.tolerance * rhs_norm, options, report);
-    if (!last.converged) break;
+    if (!last.converged) {
+      // The first guess of what the contacts do may be far off, and then hard to solve for: begin with none that press.
+      if (from_open || border.count() == 0) break;
+      from_open = true;
+      x = guess;
+      r.setZero();
+      states = contactStates(contacts, r);
+      continue;
+    }
     if (count == 0) {
       lawful = true;
       break;
@@ -243,11 +267,24 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
     const Eigen::VectorXd y = Eigen::Map<const Eigen::VectorXd>(x.data() + tail, border.count());
     r = impulses(contacts, states, border, y);
     const Eigen::VectorXd w = velocities(x);
+    const Eigen::VectorXd push = contacts.J.transpose() * r;
+    const Eigen::VectorXd twists =
+        Eigen::Map<const Eigen::VectorXd>(x.data() + m.liquidSize(), m.bodySize()).cwiseQuotient(m.scale);
+    if (last_push.size() > 0) {
+      learnResponse(push - last_push, twists - last_twists, K);
+      const Eigen::VectorXd compliance = m.compliance;
+      D = contactResponse(contacts, K, m.compliance);
+      // The border was solved with the compliance it had.
+      D.diagonal() += compliance - m.compliance;
+      m.compliance = compliance;
+    }
+    last_push = push;
+    last_twists = twists;
     // The small system, shifted so that it reproduces this solution exactly, says what the contacts do next. If that
     // moves no body, its impulses obey Coulomb's law here.
     Eigen::VectorXd next = r;
     const FrictionReport friction =
-        solveFrictionalContact(D, w - D * r + m.compliance * r, contacts.friction, kSmallTolerance, next);
+        solveFrictionalContact(D, w - D * r + m.compliance.cwiseProduct(r), contacts.friction, kSmallTolerance, next);
     report.friction_iterations += friction.iterations;
     const double change = (D * (next - r)).cwiseAbs().maxCoeff();
     lawful = friction.solved && change <= kLawFactor * options.tolerance * (D * next).cwiseAbs().maxCoeff() + kLeastSpeed;

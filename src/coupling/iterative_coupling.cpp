@@ -56,7 +56,7 @@ CoupledReport solveIteratively(StepSolver& solver, const StepProblem& problem, c
     M.block<6, 6>(6 * b, 6 * b) = problem.inertia[b];
     K.block<6, 6>(6 * b, 6 * b) = problem.inertia[b].inverse();
   }
-  double compliance = 0.0;
+  Eigen::VectorXd compliance;
   const Eigen::MatrixXd D = contactResponse(contacts, K, compliance);
   if (r.size() != 3 * contacts.count()) r = Eigen::VectorXd::Zero(3 * contacts.count());
   CoupledReport report;

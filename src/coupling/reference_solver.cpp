@@ -22,11 +22,13 @@ constexpr double kLawFactor = 10.0;  // staggered projections end when impulses 
 
 // Of all impulses lambda >= 0 that do the same to the bodies, those of least norm, as the other solvers choose them: how
 // redundant contacts share a load decides how much friction each can bear.
-Eigen::VectorXd leastNorm(const Eigen::MatrixXd& Jn, const Eigen::MatrixXd& inverse_inertia,
+Eigen::VectorXd leastNorm(const ContactRows& contacts, const Eigen::MatrixXd& inverse_inertia,
                           const Eigen::VectorXd& lambda) {
+  const Eigen::MatrixXd Jn = contacts.J.topRows(contacts.count());
   const Eigen::MatrixXd D = Jn * inverse_inertia * Jn.transpose();
   Eigen::MatrixXd regular = D;
-  regular.diagonal().array() += kContactCompliance * std::max(D.size() > 0 ? D.diagonal().maxCoeff() : 0.0, 1e-300);
+  Eigen::VectorXd compliance;
+  addCompliance(contacts, regular, compliance);
   Eigen::VectorXd out;
   const LcpReport report = solveLcp(regular, -(D * lambda), out);
   return report.solved ? out : lambda;
@@ -80,13 +82,12 @@ CoupledReport ReferenceSolver::Impl::minimise(const StepVector& rhs, const Eigen
   b.head(n) = s.G * s.inverse_mass.cwiseProduct(f) + s.J * v_free - s.flux(rhs);
   b.tail(k) = -Jc * v_free - bias;
   const Eigen::MatrixXd contact_block = Jc * inverse_inertia * Jc.transpose();
-  const double largest = k > 0 ? std::max(contact_block.diagonal().maxCoeff(), 1e-300) : 0.0;
-  const double compliance = kContactCompliance * largest;
+  const Eigen::VectorXd compliance = kContactCompliance * contact_block.diagonal();
   const auto apply = [&](const Eigen::VectorXd& from, Eigen::VectorXd& to) {
     const Eigen::VectorXd v = inverse_inertia * (s.J.transpose() * from.head(n) - Jc.transpose() * from.tail(k));
     to.resize(n + k);
     to.head(n) = s.A * from.head(n) + s.J * v;
-    to.tail(k) = -Jc * v + compliance * from.tail(k);
+    to.tail(k) = -Jc * v + compliance.cwiseProduct(from.tail(k));
   };
   const auto precondition = [&](const Eigen::VectorXd& from, Eigen::VectorXd& to) {
     if (from.size() > 0) to = cholesky.solve(from);
@@ -160,7 +161,7 @@ CoupledReport ReferenceSolver::Impl::minimiseFriction(const StepVector& rhs, con
   if (report.status != CoupledReport::Status::kConverged) return report;
   const Eigen::Index m = contacts.count();
   const Eigen::MatrixXd Jt = contacts.J.bottomRows(2 * m);
-  double compliance = 0.0;
+  Eigen::VectorXd compliance;
   const Eigen::MatrixXd D = contactResponse(contacts, response, compliance).bottomRightCorner(2 * m, 2 * m);
   const Eigen::MatrixXd none(0, problem->bodyUnknowns());
   for (int it = 0; it < kMaximumCorrections; ++it) {
@@ -171,7 +172,8 @@ CoupledReport ReferenceSolver::Impl::minimiseFriction(const StepVector& rhs, con
     report.status = part.status;
     report.message = part.message;
     if (part.status != CoupledReport::Status::kConverged) return report;
-    const Eigen::VectorXd w = Jt * gatherBodies(*problem, x.bodies) + contacts.bias.tail(2 * m) + compliance * f;
+    const Eigen::VectorXd w = Jt * gatherBodies(*problem, x.bodies) + contacts.bias.tail(2 * m) +
+                              compliance.tail(2 * m).cwiseProduct(f);
     Eigen::VectorXd next = f;
     const DiscQpReport discs = solveDiscQp(D, w - D * f, radius, kSmallTolerance, next);
     // Of redundant contacts only what they do to the bodies is determined.
@@ -227,7 +229,7 @@ CoupledReport ReferenceSolver::solveWithContacts(const StepVector& rhs, const Co
     const Eigen::VectorXd before = r;
     CoupledReport part =
         p.minimise(rhs, forces + Jt.transpose() * r.tail(2 * m), Jn, contacts.bias.head(m), options, unknowns, x);
-    r.head(m) = leastNorm(Jn, p.inverse_inertia, unknowns.tail(m));
+    r.head(m) = leastNorm(contacts, p.inverse_inertia, unknowns.tail(m));
     if (part.status == CoupledReport::Status::kConverged && frictional) {
       ++report.friction_iterations;
       // It goes on from the stresses and pressures just found.

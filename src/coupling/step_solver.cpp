@@ -1,14 +1,24 @@
 #include "coupling/step_solver.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace monolith {
 
-Eigen::MatrixXd contactResponse(const ContactRows& contacts, const Eigen::MatrixXd& K, double& compliance) {
+void addCompliance(const ContactRows& contacts, Eigen::MatrixXd& response, Eigen::VectorXd& compliance) {
+  const Eigen::Index m = contacts.count();
+  std::vector<double> largest(contacts.pair.size(), 0.0);
+  const auto pairOf = [&](Eigen::Index row) { return contacts.pair[row < m ? row : (row - m) / 2]; };
+  for (Eigen::Index i = 0; i < response.rows(); ++i) largest[pairOf(i)] = std::max(largest[pairOf(i)], response(i, i));
+  compliance.resize(response.rows());
+  for (Eigen::Index i = 0; i < response.rows(); ++i) compliance[i] = kContactCompliance * largest[pairOf(i)];
+  response.diagonal() += compliance;
+}
+
+Eigen::MatrixXd contactResponse(const ContactRows& contacts, const Eigen::MatrixXd& K, Eigen::VectorXd& compliance) {
   Eigen::MatrixXd D = contacts.J * K * contacts.J.transpose();
   D = 0.5 * (D + D.transpose()).eval();
-  compliance = kContactCompliance * std::max(D.size() > 0 ? D.diagonal().maxCoeff() : 0.0, 1e-300);
-  D.diagonal().array() += compliance;
+  addCompliance(contacts, D, compliance);
   return D;
 }
 

@@ -40,13 +40,15 @@ class StepSolver {
                                                         Eigen::VectorXd& r) = 0;
 };
 
-// Impulses of contacts against the inertia and the regularisation that every solver uses.
-// Compliance of a contact relative to that of its bodies: keeps redundant contacts (four corners of a box) solvable
-// and unique, at a speed far below any tolerance.
+// Compliance of contacts relative to that of their bodies: keeps redundant contacts (four corners of a box) solvable
+// and unique, at a speed far below any tolerance. The same for all contacts of a pair, so that every solver shares a load among
+// them in the same way.
 constexpr double kContactCompliance = 1e-9;
+void addCompliance(const ContactRows& contacts, Eigen::MatrixXd& response, Eigen::VectorXd& compliance);
 
-// J K J^T with that compliance added; `compliance` returns it. K: response of the twists of the free bodies to impulses on them.
-Eigen::MatrixXd contactResponse(const ContactRows& contacts, const Eigen::MatrixXd& K, double& compliance);
+// J K J^T with that compliance added to its diagonal; `compliance` returns it. K: response of the twists of the free bodies to
+// impulses on them.
+Eigen::MatrixXd contactResponse(const ContactRows& contacts, const Eigen::MatrixXd& K, Eigen::VectorXd& compliance);
 
 // Twists of the free bodies <-> one vector.
 Eigen::VectorXd gatherBodies(const StepProblem& problem, const std::vector<Vector6d>& all);

@@ -1,15 +1,21 @@
 #include "coupling/sticking_liquid.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace monolith {
 namespace {
 
-// Place of a cell in a body's box, in whichever periodic image lies there; false outside.
+// Place of a cell in a body's box, in the periodic image that is nearest to the body; false outside.
 bool localCell(const Lattice& l, const BodyFractions& f, const int cell[3], int local[3]) {
   for (int a = 0; a < 3; ++a) {
     local[a] = cell[a] - f.low[a];
-    if (l.periodic[a]) local[a] = ((local[a] % l.n[a]) + l.n[a]) % l.n[a];
+    if (l.periodic[a]) {
+      local[a] = ((local[a] % l.n[a]) + l.n[a]) % l.n[a];
+      // A box longer than the period holds a cell twice.
+      const auto offCentre = [&](int at) { return std::abs(2 * at - f.count[a] + 1); };
+      while (local[a] + l.n[a] < f.count[a] && offCentre(local[a] + l.n[a]) < offCentre(local[a])) local[a] += l.n[a];
+    }
     if (local[a] < 0 || local[a] >= f.count[a]) return false;
   }
   return true;

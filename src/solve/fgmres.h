@@ -11,7 +11,7 @@ namespace monolith {
 struct KrylovOptions {
   double absolute_tolerance = 0.0;  // on |b - A x|_2
   int maximum_iterations = 200;
-  int restart = 40;
+  int restart = 80;  // directions kept; memory grows only as they are used
 };
 
 struct KrylovReport {

@@ -1,0 +1,136 @@
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "solve/disc_qp.h"
+#include "solve/staggered_projections.h"
+
+namespace monolith {
+namespace {
+
+Eigen::MatrixXd randomSpd(std::mt19937& random, Eigen::Index n, Eigen::Index rank, double shift) {
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXd B(n, rank);
+  for (Eigen::Index i = 0; i < B.size(); ++i) B.data()[i] = normal(random);
+  return B * B.transpose() + shift * Eigen::MatrixXd::Identity(n, n);
+}
+
+Eigen::VectorXd randomVector(std::mt19937& random, Eigen::Index n) {
+  std::normal_distribution<double> normal;
+  Eigen::VectorXd v(n);
+  for (double& x : v) x = normal(random);
+  return v;
+}
+
+TEST(DiscQp, OneDiscMeetsItsOptimality) {
+  std::mt19937 random(1);
+  int on_edge = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const Eigen::Matrix2d B = randomSpd(random, 2, 2, 1e-3);
+    const Eigen::Vector2d g = randomVector(random, 2);
+    const double radius = std::exp(randomVector(random, 1)[0]);
+    const Eigen::Vector2d x = minimiseOverDisc(B, g, radius);
+    const Eigen::Vector2d gradient = B * x + g;
+    ASSERT_LE(x.norm(), radius * (1.0 + 1e-12));
+    if (x.norm() < radius * (1.0 - 1e-9)) {
+      EXPECT_LT(gradient.norm(), 1e-9 * g.norm());
+    } else {
+      ++on_edge;
+      // The gradient points inwards along the radius.
+      EXPECT_LT((gradient.normalized() + x.normalized()).norm(), 1e-6) << trial;
+    }
+  }
+  EXPECT_GT(on_edge, 20);
+  EXPECT_LT(on_edge, 180);
+}
+
+TEST(DiscQp, NoFeasiblePointIsBetter) {
+  std::mt19937 random(2);
+  for (int trial = 0; trial < 20; ++trial) {
+    const Eigen::Index discs = 5;
+    const Eigen::MatrixXd A = randomSpd(random, 2 * discs, trial % 2 ? 3 : 10, 1e-6);
+    const Eigen::VectorXd q = randomVector(random, 2 * discs);
+    const Eigen::VectorXd radius = randomVector(random, discs).cwiseAbs();
+    Eigen::VectorXd f;
+    ASSERT_TRUE(solveDiscQp(A, q, radius, 1e-12, f).solved);
+    const auto objective = [&](const Eigen::VectorXd& x) { return 0.5 * x.dot(A * x) + q.dot(x); };
+    for (int other = 0; other < 200; ++other) {
+      Eigen::VectorXd x = f + 0.1 * std::pow(10.0, -(other % 5)) * randomVector(random, 2 * discs);
+      for (Eigen::Index c = 0; c < discs; ++c) {
+        const double length = x.segment<2>(2 * c).norm();
+        if (length > radius[c]) x.segment<2>(2 * c) *= radius[c] / length;
+      }
+      EXPECT_GE(objective(x), objective(f) - 1e-9);
+    }
+  }
+}
+
+// Coulomb's law at every contact, to a tolerance in velocity.
+void expectLaw(const Eigen::MatrixXd& D, const Eigen::VectorXd& w0, const Eigen::VectorXd& mu, const Eigen::VectorXd& r,
+               double tolerance) {
+  const Eigen::Index m = mu.size();
+  const Eigen::VectorXd w = D * r + w0;
+  const double scale = w0.cwiseAbs().maxCoeff();
+  for (Eigen::Index c = 0; c < m; ++c) {
+    EXPECT_GE(r[c], 0.0);
+    EXPECT_GE(w[c], -tolerance * scale);
+    EXPECT_LT(std::min(r[c] / std::max(r.cwiseAbs().maxCoeff(), 1e-300), w[c] / scale), tolerance);
+    const Eigen::Vector2d f = r.segment<2>(m + 2 * c), slip = w.segment<2>(m + 2 * c);
+    EXPECT_LE(f.norm(), mu[c] * r[c] * (1.0 + 1e-9));
+    if (slip.norm() > 1e3 * tolerance * scale && mu[c] * r[c] > 0.0) {
+      EXPECT_LT((f / (mu[c] * r[c]) + slip.normalized()).norm(), 1e-3);
+    }
+  }
+}
+
+TEST(StaggeredProjections, BlockOnAPlane) {
+  // A point of mass 2 pushed down and sideways: D = 1/2.
+  const Eigen::MatrixXd D = 0.5 * Eigen::MatrixXd::Identity(3, 3);
+  for (const double mu : {0.0, 0.2, 0.5}) {
+    Eigen::VectorXd r;
+    const Eigen::Vector3d w0(-1.0, 0.3, 0.0);
+    ASSERT_TRUE(solveFrictionalContact(D, w0, Eigen::VectorXd::Constant(1, mu), 1e-12, r).solved);
+    EXPECT_NEAR(r[0], 2.0, 1e-10);
+    EXPECT_NEAR(r[1], -std::min(2.0 * mu, 0.6), 1e-10);
+    EXPECT_NEAR(r[2], 0.0, 1e-10);
+  }
+}
+
+TEST(StaggeredProjections, RandomContactsObeyCoulombsLaw) {
+  std::mt19937 random(3);
+  int solved = 0, staggered = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    const Eigen::Index m = 1 + trial % 8;
+    // Fewer degrees of freedom than rows: redundant contacts.
+    Eigen::MatrixXd D = randomSpd(random, 3 * m, 6, 0.0);
+    D.diagonal().array() += 1e-9 * D.diagonal().maxCoeff();
+    Eigen::VectorXd mu = 0.4 * randomVector(random, m).cwiseAbs();
+    const Eigen::VectorXd feasible = randomVector(random, 3 * m).cwiseAbs();
+    Eigen::VectorXd w0 = -D * feasible;  // a configuration that some impulses can bring to rest
+    Eigen::VectorXd r;
+    const FrictionReport report = solveFrictionalContact(D, w0, mu, 1e-10, r);
+    if (!report.solved) continue;
+    ++solved;
+    staggered += report.staggered;
+    SCOPED_TRACE(trial);
+    expectLaw(D, w0, mu, r, 1e-6);
+  }
+  // Random couplings of normals and tangents are harsher than bodies' own.
+  EXPECT_GE(solved, 54);
+  EXPECT_GE(staggered, 45);
+  printf("%d %d\n", solved, staggered);
+}
+
+TEST(StaggeredProjections, SweepsTakeOverWhereAlternationCycles) {
+  // Normal and tangent coupled so strongly that friction of full size reverses the normal problem.
+  Eigen::MatrixXd D(3, 3);
+  D << 1.0, 0.9, 0.0, 0.9, 1.0, 0.0, 0.0, 0.0, 1.0;
+  const Eigen::Vector3d w0(-1.0, 0.5, 0.0);
+  Eigen::VectorXd r;
+  const FrictionReport report = solveFrictionalContact(D, w0, Eigen::VectorXd::Constant(1, 0.9), 1e-10, r);
+  ASSERT_TRUE(report.solved);
+  expectLaw(D, w0, Eigen::VectorXd::Constant(1, 0.9), r, 1e-8);
+}
+
+}  // namespace
+}  // namespace monolith
