@@ -19,6 +19,8 @@ bool runSettling();
 bool runVolume(double seconds);
 // A box on a slope, dry and under liquid: friction angle within 0.1 degree, no drift below it.
 bool runSlope();
+// A set of scenes by every solver, coupling and discretisation: error, iterations, time, memory.
+bool runSolvers();
 // Seconds per step and stage of the drop scene at several sizes and thread counts.
 bool runBench();
 

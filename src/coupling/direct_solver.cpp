@@ -10,7 +10,7 @@ namespace monolith {
 namespace {
 
 constexpr int kRefinements = 3;
-constexpr double kSmallTolerance = 1e-11;
+constexpr double kSmallTolerance = 1e-9;
 // Weight that pins one pressure of each sealed region; the border takes its effect back where the constant matters.
 constexpr double kPin = 1.0;
 

@@ -17,7 +17,8 @@ namespace {
 constexpr double kStaleIterations = 1.4;
 // ... or the viscous number has changed by this factor.
 constexpr double kStaleNumber = 1.5;
-// Staggered projections on the small system are exact next to the tolerance of the whole.
+// Coulomb's law on the small system is solved this much more closely than the whole, as far as digits allow.
+constexpr double kSmallFactor = 0.01;
 constexpr double kSmallTolerance = 1e-9;
 // Contacts have settled when what they do to the bodies' velocities changes by less than the solve's tolerance times this.
 constexpr double kLawFactor = 10.0;
@@ -208,6 +209,7 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
   m.pack(x_fields, x, false);
   const double rhs_norm = stepNorm(p, rhs_fields);
   const Eigen::Index count = contacts.count();
+  const double small_tolerance = std::max(kSmallFactor * options.tolerance, kSmallTolerance);
 
   // Response of bodies and contacts on the approximate Schur complement.
   Eigen::MatrixXd K, D;
@@ -231,7 +233,7 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
     for (std::size_t i = 0; i < tail; ++i) z[i] += x[i];
     if (r.size() != 3 * count) r = Eigen::VectorXd::Zero(3 * count);
     const FrictionReport friction =
-        solveFrictionalContact(D, velocities(z), contacts.friction, kSmallTolerance, r);
+        solveFrictionalContact(D, velocities(z), contacts.friction, small_tolerance, r);
     report.friction_iterations += friction.iterations;
     states = contactStates(contacts, r);
   }
@@ -284,7 +286,7 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
     // moves no body, its impulses obey Coulomb's law here.
     Eigen::VectorXd next = r;
     const FrictionReport friction =
-        solveFrictionalContact(D, w - D * r + m.compliance.cwiseProduct(r), contacts.friction, kSmallTolerance, next);
+        solveFrictionalContact(D, w - D * r + m.compliance.cwiseProduct(r), contacts.friction, small_tolerance, next);
     report.friction_iterations += friction.iterations;
     const double change = (D * (next - r)).cwiseAbs().maxCoeff();
     lawful = friction.solved && change <= kLawFactor * options.tolerance * (D * next).cwiseAbs().maxCoeff() + kLeastSpeed;

@@ -1,6 +1,8 @@
 #include "coupling/iterative_coupling.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <vector>
 
@@ -10,8 +12,9 @@ namespace monolith {
 namespace {
 
 constexpr int kMaximumAlternations = 500;
-constexpr double kSmallTolerance = 1e-12;
+constexpr double kSmallTolerance = 1e-9;
 constexpr std::size_t kHistory = 8;
+constexpr double kGrowth = 2.0;  // of the residual, after which the history is dropped
 
 // Anderson mixing (Walker & Ni 2011, SIAM J. Numer. Anal. 49, 1715) of a fixed point g = G(g): plain alternation
 // contracts by the liquid's share of the resistance, which is nearly one for light bodies and thick liquids.
@@ -19,6 +22,16 @@ class Mixing {
  public:
   Eigen::VectorXd next(const Eigen::VectorXd& g, const Eigen::VectorXd& image) {
     const Eigen::VectorXd residual = image - g;
+    // Where contacts change what they do the map has a kink, and what was learnt on its other side misleads.
+    const double size = residual.norm();
+    if (size > kGrowth * least_) {
+      residuals_.clear();
+      images_.clear();
+      last_residual_.resize(0);
+      least_ = size;
+      return image;
+    }
+    least_ = std::min(least_, size);
     if (last_residual_.size() > 0) {
       residuals_.push_back(residual - last_residual_);
       images_.push_back(image - last_image_);
@@ -42,6 +55,7 @@ class Mixing {
  private:
   std::vector<Eigen::VectorXd> residuals_, images_;  // differences
   Eigen::VectorXd last_residual_, last_image_;
+  double least_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace

@@ -17,6 +17,8 @@ constexpr int kMaximumTightenings = 8;
 constexpr double kTightening = 0.1;
 constexpr double kResponseTolerance = 1e-5;  // of the bodies' response, which steers the friction problem
 constexpr double kSmallTolerance = 1e-11;
+constexpr int kMaximumSweeps = 20000;         // of the friction problem on the bodies' response
+constexpr int kMaximumAlternations = 200;    // of staggered projections
 constexpr int kMaximumCorrections = 30;      // of the friction problem
 constexpr double kLawFactor = 10.0;  // staggered projections end when impulses change by less than this times the tolerance
 
@@ -175,7 +177,7 @@ CoupledReport ReferenceSolver::Impl::minimiseFriction(const StepVector& rhs, con
     const Eigen::VectorXd w = Jt * gatherBodies(*problem, x.bodies) + contacts.bias.tail(2 * m) +
                               compliance.tail(2 * m).cwiseProduct(f);
     Eigen::VectorXd next = f;
-    const DiscQpReport discs = solveDiscQp(D, w - D * f, radius, kSmallTolerance, next);
+    const DiscQpReport discs = solveDiscQp(D, w - D * f, radius, kSmallTolerance, kMaximumSweeps, next);
     // Of redundant contacts only what they do to the bodies is determined.
     const double change = (Jt.transpose() * (next - f)).norm();
     const double push = (Jt.transpose() * next).norm();
@@ -225,7 +227,7 @@ CoupledReport ReferenceSolver::solveWithContacts(const StepVector& rhs, const Co
   Eigen::VectorXd unknowns(n + m);
   unknowns << start, r.head(m);
   double change = 0.0;
-  for (int round = 0; round < options.maximum_rounds; ++round) {
+  for (int round = 0; round < kMaximumAlternations; ++round) {
     const Eigen::VectorXd before = r;
     CoupledReport part =
         p.minimise(rhs, forces + Jt.transpose() * r.tail(2 * m), Jn, contacts.bias.head(m), options, unknowns, x);
@@ -253,7 +255,7 @@ CoupledReport ReferenceSolver::solveWithContacts(const StepVector& rhs, const Co
     if (change <= kLawFactor * options.tolerance) return report;
   }
   std::ostringstream text;
-  text << "staggered projections of " << m << " contacts stopped after " << options.maximum_rounds
+  text << "staggered projections of " << m << " contacts stopped after " << kMaximumAlternations
        << " alternations; the impulses still change by " << change << " of the largest";
   report.message = text.str();
   report.status = CoupledReport::Status::kNotConverged;

@@ -13,7 +13,7 @@ namespace monolith {
 struct CoupledOptions {
   double tolerance = 1e-6;       // |b - A x|_2 relative to |b|_2
   int maximum_iterations = 200;  // Krylov iterations of one linear solve of `fast`
-  int maximum_rounds = 30;       // of the contacts' states (fast), staggered projections (reference)
+  int maximum_rounds = 30;       // solves of `fast` until the contacts have settled
 };
 
 struct CoupledReport {

@@ -3,12 +3,6 @@
 #include <cmath>
 
 namespace monolith {
-namespace {
-
-constexpr int kMaximumSweeps = 20000;
-
-}  // namespace
-
 Eigen::Vector2d minimiseOverDisc(const Eigen::Matrix2d& B, const Eigen::Vector2d& g, double radius) {
   if (!(radius > 0.0)) return Eigen::Vector2d::Zero();
   const Eigen::Vector2d inside = -B.ldlt().solve(g);
@@ -32,7 +26,7 @@ Eigen::Vector2d minimiseOverDisc(const Eigen::Matrix2d& B, const Eigen::Vector2d
 }
 
 DiscQpReport solveDiscQp(const Eigen::MatrixXd& A, const Eigen::VectorXd& q, const Eigen::VectorXd& radius,
-                         double tolerance, Eigen::VectorXd& f) {
+                         double tolerance, int maximum_sweeps, Eigen::VectorXd& f) {
   DiscQpReport report;
   const Eigen::Index count = radius.size();
   if (f.size() != 2 * count) f = Eigen::VectorXd::Zero(2 * count);
@@ -44,7 +38,7 @@ DiscQpReport solveDiscQp(const Eigen::MatrixXd& A, const Eigen::VectorXd& q, con
   }
   const double goal = tolerance * q.cwiseAbs().maxCoeff();
   Eigen::VectorXd w = A * f;
-  while (report.sweeps < kMaximumSweeps) {
+  while (report.sweeps < maximum_sweeps) {
     ++report.sweeps;
     const Eigen::VectorXd before = w;
     for (Eigen::Index c = 0; c < count; ++c) {

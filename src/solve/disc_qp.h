@@ -19,6 +19,6 @@ Eigen::Vector2d minimiseOverDisc(const Eigen::Matrix2d& B, const Eigen::Vector2d
 // f: start on entry, minimiser on return. Ends when a sweep changes A f (velocities) by no more than tolerance * max |q|:
 // of redundant contacts the impulses themselves are not determined.
 [[nodiscard]] DiscQpReport solveDiscQp(const Eigen::MatrixXd& A, const Eigen::VectorXd& q, const Eigen::VectorXd& radius,
-                                       double tolerance, Eigen::VectorXd& f);
+                                       double tolerance, int maximum_sweeps, Eigen::VectorXd& f);
 
 }  // namespace monolith

@@ -1,6 +1,7 @@
 #include "solve/staggered_projections.h"
 
 #include <cmath>
+#include <limits>
 
 #include "solve/disc_qp.h"
 #include "solve/lcp.h"
@@ -9,38 +10,110 @@ namespace monolith {
 namespace {
 
 constexpr int kMaximumAlternations = 200;
+constexpr int kSweepsPerAlternation = 50;  // of the friction problem, which need not be solved closely
+constexpr int kNewtonSteps = 12;
+constexpr double kCloser = 0.5;
 constexpr int kMaximumSweeps = 5000;
 constexpr int kAngles = 72;  // of the search for the direction of slip
-// The problems inside are solved this much more closely than their fixed point.
-constexpr double kInnerTolerance = 0.1;
 
 double largest(const Eigen::VectorXd& v) { return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0.0; }
 
-bool alternate(const Eigen::MatrixXd& D, const Eigen::VectorXd& w0, const Eigen::VectorXd& mu, double tolerance,
+// Steps of the projection, inverse to the contact's own response.
+double normalStep(const Eigen::MatrixXd& D, Eigen::Index c) { return 1.0 / D(c, c); }
+double tangentStep(const Eigen::MatrixXd& D, Eigen::Index m, Eigen::Index c) {
+  return 1.0 / std::max(D(m + 2 * c, m + 2 * c), D(m + 2 * c + 1, m + 2 * c + 1));
+}
+
+// Newton's method on r = P(r - w/D_cc), undamped, from r. The best iterate is returned.
+void newton(const Eigen::MatrixXd& D, const Eigen::VectorXd& w0, const Eigen::VectorXd& mu, double goal,
+            Eigen::VectorXd& r, FrictionReport& report) {
+  const Eigen::Index m = mu.size();
+  Eigen::VectorXd x = r;
+  double best = coulombResidual(D, w0, mu, r);
+  for (int it = 0; it < kNewtonSteps && best > goal; ++it) {
+    ++report.iterations;
+    const Eigen::VectorXd w = D * x + w0;
+    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(3 * m, 3 * m);
+    Eigen::VectorXd residual(3 * m);
+    for (Eigen::Index c = 0; c < m; ++c) {
+      const Eigen::Index t = m + 2 * c;
+      if (!(x[c] - normalStep(D, c) * w[c] > 0.0)) {
+        for (const Eigen::Index e : {c, t, t + 1}) {
+          A(e, e) = D(e, e);
+          residual[e] = D(e, e) * x[e];
+        }
+        continue;
+      }
+      A.row(c) = D.row(c);
+      residual[c] = w[c];
+      const double step = tangentStep(D, m, c);
+      const Eigen::Vector2d f = x.segment<2>(t), trial = f - step * w.segment<2>(t);
+      const double length = trial.norm(), radius = mu[c] * std::max(x[c], 0.0);
+      if (length <= radius) {
+        A.middleRows<2>(t) = D.middleRows<2>(t);
+        residual.segment<2>(t) = w.segment<2>(t);
+        continue;
+      }
+      const Eigen::Vector2d along = trial / length;
+      const Eigen::Matrix2d turn = radius / length * (Eigen::Matrix2d::Identity() - along * along.transpose());
+      A.middleRows<2>(t) = (step * turn) * D.middleRows<2>(t);
+      A.block<2, 2>(t, t) += Eigen::Matrix2d::Identity() - turn;
+      A.block<2, 1>(t, c) -= mu[c] * along;
+      residual.segment<2>(t) = f - radius * along;
+      A.middleRows<2>(t) /= step;
+      residual.segment<2>(t) /= step;
+    }
+    const Eigen::VectorXd d = A.partialPivLu().solve(residual);
+    if (!d.allFinite()) return;
+    x -= d;
+    // Inside the cones, as the law's residual wants them.
+    Eigen::VectorXd inside = x;
+    for (Eigen::Index c = 0; c < m; ++c) {
+      inside[c] = std::max(inside[c], 0.0);
+      const double length = inside.segment<2>(m + 2 * c).norm(), radius = mu[c] * inside[c];
+      if (length > radius) inside.segment<2>(m + 2 * c) *= radius / length;
+    }
+    const double now = coulombResidual(D, w0, mu, inside);
+    if (now < best) {
+      best = now;
+      r = inside;
+    }
+  }
+}
+
+bool alternate(const Eigen::MatrixXd& D, const Eigen::VectorXd& w0, const Eigen::VectorXd& mu, double goal,
                Eigen::VectorXd& r, FrictionReport& report) {
   const Eigen::Index m = mu.size();
   const bool frictionless = !(mu.maxCoeff() > 0.0);
-  const double scale = std::max(largest(w0), 1e-300);
   if (frictionless) r.tail(2 * m).setZero();
+  double best = std::numeric_limits<double>::infinity();
   for (int it = 0; it < kMaximumAlternations; ++it) {
     ++report.iterations;
-    const Eigen::VectorXd before = r;
     Eigen::VectorXd lambda;
     const LcpReport lcp =
         solveLcp(D.topLeftCorner(m, m), w0.head(m) + D.topRightCorner(m, 2 * m) * r.tail(2 * m), lambda);
     if (!lcp.solved) return false;
     r.head(m) = lambda;
-    if (frictionless) {
-      report.residual = 0.0;
+    if (!frictionless) {
+      Eigen::VectorXd f = r.tail(2 * m);
+      // Its residual counts, not whether these sweeps have finished.
+      static_cast<void>(solveDiscQp(D.bottomRightCorner(2 * m, 2 * m), w0.tail(2 * m) + D.bottomLeftCorner(2 * m, m) * lambda,
+                      mu.cwiseProduct(lambda), 1e-14, kSweepsPerAlternation, f));
+      r.tail(2 * m) = f;
+    }
+    report.residual = coulombResidual(D, w0, mu, r);
+    if (report.residual <= goal) return true;
+    // Worth a try whenever alternation has come clearly closer.
+    if (report.residual > kCloser * best) continue;
+    best = report.residual;
+    Eigen::VectorXd candidate = r;
+    newton(D, w0, mu, goal, candidate, report);
+    const double reached = coulombResidual(D, w0, mu, candidate);
+    if (reached <= goal) {
+      r = candidate;
+      report.residual = reached;
       return true;
     }
-    Eigen::VectorXd f = r.tail(2 * m);
-    const DiscQpReport discs =
-        solveDiscQp(D.bottomRightCorner(2 * m, 2 * m), w0.tail(2 * m) + D.bottomLeftCorner(2 * m, m) * lambda,
-                    mu.cwiseProduct(lambda), kInnerTolerance * tolerance, f);
-    r.tail(2 * m) = f;
-    report.residual = largest(D * (r - before)) / scale;
-    if (discs.solved && report.residual <= tolerance) return true;
   }
   return false;
 }
@@ -85,15 +158,13 @@ Eigen::Vector3d solveOneContact(const Eigen::Matrix3d& B, const Eigen::Vector3d&
   return old;
 }
 
-bool sweep(const Eigen::MatrixXd& D, const Eigen::VectorXd& w0, const Eigen::VectorXd& mu, double tolerance,
+bool sweep(const Eigen::MatrixXd& D, const Eigen::VectorXd& w0, const Eigen::VectorXd& mu, double goal,
            Eigen::VectorXd& r, FrictionReport& report) {
   const Eigen::Index m = mu.size();
   report.staggered = false;
-  const double scale = std::max(largest(w0), 1e-300);
   Eigen::VectorXd w = D * r + w0;
   for (int it = 0; it < kMaximumSweeps; ++it) {
     ++report.iterations;
-    const Eigen::VectorXd before = w;
     for (Eigen::Index c = 0; c < m; ++c) {
       const Eigen::Index at[3] = {c, m + 2 * c, m + 2 * c + 1};
       Eigen::Matrix3d B;
@@ -110,13 +181,31 @@ bool sweep(const Eigen::MatrixXd& D, const Eigen::VectorXd& w0, const Eigen::Vec
         w += D.col(at[i]) * step[i];
       }
     }
-    report.residual = largest(w - before) / scale;
-    if (report.residual <= kInnerTolerance * tolerance) return true;
+    report.residual = coulombResidual(D, w0, mu, r);
+    if (report.residual <= goal) return true;
   }
   return false;
 }
 
 }  // namespace
+
+double coulombResidual(const Eigen::MatrixXd& D, const Eigen::VectorXd& w0, const Eigen::VectorXd& mu,
+                       const Eigen::VectorXd& r) {
+  const Eigen::Index m = mu.size();
+  const Eigen::VectorXd w = D * r + w0;
+  double worst = 0.0;
+  for (Eigen::Index c = 0; c < m; ++c) {
+    const double normal = normalStep(D, c), tangent = tangentStep(D, m, c);
+    const double lambda = std::max(0.0, r[c] - normal * w[c]);
+    worst = std::max(worst, std::abs(r[c] - lambda) / normal);
+    const Eigen::Vector2d f = r.segment<2>(m + 2 * c);
+    Eigen::Vector2d trial = f - tangent * w.segment<2>(m + 2 * c);
+    const double length = trial.norm(), radius = mu[c] * r[c];
+    if (length > radius) trial *= std::max(radius, 0.0) / length;
+    worst = std::max(worst, (f - trial).norm() / tangent);
+  }
+  return worst;
+}
 
 FrictionReport solveFrictionalContact(const Eigen::MatrixXd& D, const Eigen::VectorXd& w0, const Eigen::VectorXd& mu,
                                       double tolerance, Eigen::VectorXd& r) {
@@ -127,7 +216,15 @@ FrictionReport solveFrictionalContact(const Eigen::MatrixXd& D, const Eigen::Vec
     report.solved = true;
     return report;
   }
-  report.solved = alternate(D, w0, mu, tolerance, r, report) || sweep(D, w0, mu, tolerance, r, report);
+  const double scale = std::max(largest(w0), 1e-300);
+  const double goal = tolerance * scale;
+  const Eigen::VectorXd start = r;
+  report.solved = alternate(D, w0, mu, goal, r, report);
+  if (!report.solved) {
+    r = start;
+    report.solved = sweep(D, w0, mu, goal, r, report);
+  }
+  report.residual /= scale;
   return report;
 }
 

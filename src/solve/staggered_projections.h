@@ -4,10 +4,11 @@
 // normal problem, f given:         0 <= lambda, 0 <= w_n, lambda . w_n = 0
 // friction problem, lambda given:  min over |f_c| <= mu_c lambda_c of 1/2 f^T D_tt f + (D_tn lambda + w0_t)^T f
 // alternated to a fixed point. There each contact obeys Coulomb's law: f inside the cone, and on it, opposite to w_t,
-// where it slips. The alternation need not contract (large mu with a strong coupling of normal and tangent); then the same
-// law is solved contact by contact (non-smooth contact dynamics: Jean 1999, Comput. Methods Appl. Mech. Eng. 177, 235).
+// where it slips. Alternation contracts linearly and may not at all (large mu with a strong coupling of normal and tangent); so
+// Newton's method on the law itself (Alart & Curnier 1991, Comput. Methods Appl. Mech. Eng. 92, 353) is tried from
+// its iterates, and the law is solved contact by contact (non-smooth contact dynamics: Jean 1999, ibid. 177, 235) if all else fails.
 //
-// Convergence is judged by velocities: impulses of redundant contacts (four corners of a box) are not determined.
+// What counts is how well the law holds, in velocities: impulses of redundant contacts (four corners of a box) are not determined.
 
 #include <Eigen/Dense>
 
@@ -16,9 +17,13 @@ namespace monolith {
 struct FrictionReport {
   bool solved = false;
   bool staggered = true;  // false: by contact-wise sweeps
-  int iterations = 0;     // alternations, then sweeps
-  double residual = 0.0;  // largest change of a velocity in the last one, relative to the largest of w0
+  int iterations = 0;     // alternations and Newton steps, then sweeps
+  double residual = 0.0;  // of the law, relative to the largest velocity of w0
 };
+
+// How far r is from Coulomb's law, as a velocity: |r - P(r - w/D_cc)| D_cc with the projection P onto each contact's cone.
+double coulombResidual(const Eigen::MatrixXd& D, const Eigen::VectorXd& w0, const Eigen::VectorXd& mu,
+                       const Eigen::VectorXd& r);
 
 // r: start on entry (only its friction part counts), solution on return.
 [[nodiscard]] FrictionReport solveFrictionalContact(const Eigen::MatrixXd& D, const Eigen::VectorXd& w0,

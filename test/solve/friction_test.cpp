@@ -52,7 +52,7 @@ TEST(DiscQp, NoFeasiblePointIsBetter) {
     const Eigen::VectorXd q = randomVector(random, 2 * discs);
     const Eigen::VectorXd radius = randomVector(random, discs).cwiseAbs();
     Eigen::VectorXd f;
-    ASSERT_TRUE(solveDiscQp(A, q, radius, 1e-12, f).solved);
+    ASSERT_TRUE(solveDiscQp(A, q, radius, 1e-12, 20000, f).solved);
     const auto objective = [&](const Eigen::VectorXd& x) { return 0.5 * x.dot(A * x) + q.dot(x); };
     for (int other = 0; other < 200; ++other) {
       Eigen::VectorXd x = f + 0.1 * std::pow(10.0, -(other % 5)) * randomVector(random, 2 * discs);
@@ -77,7 +77,7 @@ void expectLaw(const Eigen::MatrixXd& D, const Eigen::VectorXd& w0, const Eigen:
     EXPECT_LT(std::min(r[c] / std::max(r.cwiseAbs().maxCoeff(), 1e-300), w[c] / scale), tolerance);
     const Eigen::Vector2d f = r.segment<2>(m + 2 * c), slip = w.segment<2>(m + 2 * c);
     EXPECT_LE(f.norm(), mu[c] * r[c] * (1.0 + 1e-9));
-    if (slip.norm() > 1e3 * tolerance * scale && mu[c] * r[c] > 0.0) {
+    if (slip.norm() > 1e3 * tolerance * scale && r[c] > 1e-4 * r.cwiseAbs().maxCoeff()) {
       EXPECT_LT((f / (mu[c] * r[c]) + slip.normalized()).norm(), 1e-3);
     }
   }
@@ -108,7 +108,7 @@ TEST(StaggeredProjections, RandomContactsObeyCoulombsLaw) {
     const Eigen::VectorXd feasible = randomVector(random, 3 * m).cwiseAbs();
     Eigen::VectorXd w0 = -D * feasible;  // a configuration that some impulses can bring to rest
     Eigen::VectorXd r;
-    const FrictionReport report = solveFrictionalContact(D, w0, mu, 1e-10, r);
+    const FrictionReport report = solveFrictionalContact(D, w0, mu, 1e-9, r);
     if (!report.solved) continue;
     ++solved;
     staggered += report.staggered;
