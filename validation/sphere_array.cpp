@@ -8,7 +8,7 @@ namespace {
 
 // Drag factor K = F/(6 pi mu a U) of a simple cubic array, one sphere fixed in a periodic cell of edge 1 m through
 // which gravity drives the liquid; U is the superficial velocity. Creeping: Re about 1e-5.
-double dragFactor(int cells, double radius, const Eigen::Vector3d& offset_cells) {
+double dragFactor(int cells, double radius, const Eigen::Vector3d& offset_cells, Discretisation discretisation) {
   const double h = 1.0 / cells;
   Scene scene;
   scene.name = "array";
@@ -21,6 +21,7 @@ double dragFactor(int cells, double radius, const Eigen::Vector3d& offset_cells)
   scene.gravity = Eigen::Vector3d(0.0, 0.0, 1e-4);
   scene.time_step = 100.0 * h * h;  // viscous number 100
   scene.solver.tolerance = 1e-6;
+  scene.solver.discretisation = discretisation;
   scene.bodies.push_back(sphereBody("sphere", radius, 1.0, Eigen::Vector3d::Constant(0.5) + h * offset_cells));
   scene.bodies[0].motion = BodyMotion::kFixed;
   Simulation simulation(scene);
@@ -52,11 +53,18 @@ bool runSphereArray() {
     for (const double wanted : {4.0, 10.0}) {
       // An even number of cells, not more than the wanted resolution asks for (4: at least six).
       const int cells = std::max(6, 2 * static_cast<int>(std::floor(0.5 * wanted / diameter + 0.25)));
-      double mean = 0.0;
-      for (const Eigen::Vector3d& offset : offsets) mean += 0.25 * dragFactor(cells, 0.5 * diameter, offset);
+      const auto mean = [&](Discretisation discretisation) {
+        double sum = 0.0;
+        for (const Eigen::Vector3d& offset : offsets) sum += dragFactor(cells, 0.5 * diameter, offset, discretisation);
+        return 0.25 * sum;
+      };
       char name[64];
       std::snprintf(name, sizeof(name), "array phi %.3f, D/h %.2f", row.fraction, diameter * cells);
-      met = report(name, "drag factor", mean, row.exact, wanted < 5.0 ? 0.05 : 0.01) && met;
+      met = report(name, "drag factor", mean(Discretisation::kFitted), row.exact, wanted < 5.0 ? 0.05 : 0.01) && met;
+      // The paper's volume fractions beside it: no goal, they converge slowly.
+      const double fractions = mean(Discretisation::kFractions);
+      std::printf("%-34s %-22s %12.6g  reference %12.6g  error %+7.2f %%\n", "  fractions", "drag factor", fractions,
+                  row.exact, 100.0 * (fractions / row.exact - 1.0));
     }
   }
   return met;

@@ -25,8 +25,8 @@ std::unique_ptr<StepSolver> makeSolver(SolverName name) {
 }  // namespace
 
 struct CoupledSystem::Impl {
-  Impl(const MacGrid& grid, SolverName name, CouplingName coupling_name)
-      : problem(grid), solver(makeSolver(name)), coupling(coupling_name) {}
+  Impl(const MacGrid& grid, SolverName name, CouplingName coupling_name, Discretisation discretisation)
+      : problem(grid, discretisation), solver(makeSolver(name)), coupling(coupling_name) {}
 
   StepProblem problem;
   std::unique_ptr<StepSolver> solver;
@@ -34,8 +34,9 @@ struct CoupledSystem::Impl {
   StepVector rhs, x;
 };
 
-CoupledSystem::CoupledSystem(const MacGrid& grid, SolverName solver, CouplingName coupling)
-    : impl_(std::make_unique<Impl>(grid, solver, coupling)) {}
+CoupledSystem::CoupledSystem(const MacGrid& grid, SolverName solver, CouplingName coupling,
+                             Discretisation discretisation)
+    : impl_(std::make_unique<Impl>(grid, solver, coupling, discretisation)) {}
 CoupledSystem::~CoupledSystem() = default;
 
 const StepProblem& CoupledSystem::problem() const { return impl_->problem; }
@@ -93,6 +94,7 @@ CoupledReport CoupledSystem::solve(const FaceField<double>& free_velocity, const
     }
     clearHalo(l, m.x.velocity[a]);
   }
+  p.toUnknowns(m.x.velocity);
   for (std::size_t i = 0; i < l.size; ++i) {
     m.x.pressure[i] = p.coefficients.has_pressure[i] ? state.pressure[i] / p.pressure_scale : 0.0;
   }
@@ -111,6 +113,7 @@ CoupledReport CoupledSystem::solve(const FaceField<double>& free_velocity, const
   if (report.status != CoupledReport::Status::kConverged) return report;
 
   state.velocity = m.x.velocity;
+  p.toVelocities(state.velocity);
   for (std::size_t i = 0; i < l.size; ++i) state.pressure[i] = m.x.pressure[i] * p.pressure_scale;
   state.twists = m.x.bodies;
   p.results(m.x, gravity, state.liquid, report.divergence);

@@ -22,7 +22,7 @@ struct CoupledState {
 
 class CoupledSystem {
  public:
-  CoupledSystem(const MacGrid& grid, SolverName solver, CouplingName coupling);
+  CoupledSystem(const MacGrid& grid, SolverName solver, CouplingName coupling, Discretisation discretisation);
   ~CoupledSystem();
 
   // Geometry and material of the step; liquid_distance in cell widths with its halo filled. Bodies and distance must

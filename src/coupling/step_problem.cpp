@@ -4,6 +4,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "coupling/fraction_coefficients.h"
+
 namespace monolith {
 namespace {
 
@@ -25,18 +27,13 @@ void StepProblem::assemble(SolidFractions& solids, const std::vector<RigidBody>&
   pressure_scale = density * grid.h / dt;
 
   sticking.clear();
-  if (viscous_number >= kStickingNumber) {
-    attachStickingLiquid(grid, solids, sticking);
-    for (StickingLiquid& s : sticking) {
-      s.fraction *= liquidPart(liquid_distance[s.face - grid.lattice.stride[s.axis]], liquid_distance[s.face]);
-    }
-  }
-  const StokesGeometry geometry{&solids.fluid, &solids.distance, &liquid_distance};
-  buildCoefficients(grid.lattice, geometry, viscous_number, coefficients);
-  buildBodyRows(grid, solids, all_bodies, geometry, coefficients, rows);
-  enclosed = moveEnclosedRows(grid, solids, all_bodies, coefficients, liquid_distance, rows);
   if (coarse.empty()) coarse.resize(1);
-  buildCoarseLevels(grid.lattice, geometry, viscous_number, coarse);
+  if (discretisation == Discretisation::kFitted) {
+    assembleFitted(solids, liquid_distance);
+  } else {
+    assembleFractions(solids, liquid_distance);
+  }
+  enclosed = moveEnclosedRows(grid, solids, all_bodies, coefficients, liquid_distance, rows);
   op_.set(&coefficients, &rows);
 
   std::vector<char> moves(all_bodies.size(), 0);
@@ -72,6 +69,55 @@ void StepProblem::assemble(SolidFractions& solids, const std::vector<RigidBody>&
   regions = findPressureRegions(coefficients, rows, moves);
 }
 
+void StepProblem::assembleFitted(SolidFractions& solids, const std::vector<double>& liquid_distance) {
+  if (viscous_number >= kStickingNumber) {
+    attachStickingLiquid(grid, solids, sticking);
+    for (StickingLiquid& s : sticking) {
+      s.fraction *= liquidPart(liquid_distance[s.face - grid.lattice.stride[s.axis]], liquid_distance[s.face]);
+    }
+  }
+  const StokesGeometry geometry{&solids.fluid, &solids.distance, &liquid_distance};
+  buildCoefficients(grid.lattice, geometry, viscous_number, coefficients);
+  buildBodyRows(grid, solids, *bodies, geometry, coefficients, rows);
+  buildCoarseLevels(grid.lattice, geometry, viscous_number, coarse);
+}
+
+void StepProblem::assembleFractions(SolidFractions& solids, const std::vector<double>& liquid_distance) {
+  closeSlivers(grid, solids);
+  const FractionGeometry geometry = sampleFractions(grid, *bodies, solids, liquid_distance, viscous_number > 0.0);
+  buildFractionCoefficients(grid.lattice, geometry, viscous_number, coefficients);
+  buildFractionRows(grid, solids, *bodies, coefficients, rows);
+  buildCoarseFractionLevels(grid.lattice, geometry, liquid_distance, viscous_number, coarse);
+  flux_share = geometry.fluid;
+  for (int a = 0; a < 3; ++a) {
+    for (std::size_t f = 0; f < flux_share[a].size(); ++f) {
+      if (!(coefficients.mass[a][f] > 0.0)) flux_share[a][f] = 0.0;
+    }
+  }
+}
+
+void StepProblem::toUnknowns(FaceField<double>& velocity) const {
+  for (int a = 0; a < 3; ++a) {
+    for (std::size_t f = 0; f < flux_share[a].size(); ++f) velocity[a][f] *= flux_share[a][f];
+  }
+}
+
+void StepProblem::toVelocities(FaceField<double>& unknowns) const {
+  for (int a = 0; a < 3; ++a) {
+    for (std::size_t f = 0; f < flux_share[a].size(); ++f) {
+      if (flux_share[a][f] > 0.0) unknowns[a][f] /= flux_share[a][f];
+    }
+  }
+}
+
+FaceField<double> StepProblem::liquidMass() const {
+  // mass U^2 = (W_F W_L) u^2
+  FaceField<double> mass = coefficients.mass;
+  toUnknowns(mass);
+  toUnknowns(mass);
+  return mass;
+}
+
 // It has moved with its body: its momentum is not that of the face, which is slower.
 double StepProblem::stickingVelocity(const StickingLiquid& s, const Vector6d& row, const Eigen::Vector3d& gravity) const {
   return row.dot((*bodies)[s.body].twist) + dt * gravity[s.axis];
@@ -105,10 +151,12 @@ std::string StepProblem::rightSide(const FaceField<double>& free_velocity, const
     for (double& r : rhs.pressure) r = -r;
     for (auto& force : rhs.bodies) force = -force;
   }
+  FaceField<double> wanted = free_velocity;
+  toUnknowns(wanted);
   for (int a = 0; a < 3; ++a) {
     std::vector<double> mass = coefficients.mass[a];
     clearHalo(l, mass);
-    for (std::size_t i = 0; i < l.size; ++i) rhs.velocity[a][i] += mass[i] * free_velocity[a][i];
+    for (std::size_t i = 0; i < l.size; ++i) rhs.velocity[a][i] += mass[i] * wanted[a][i];
   }
   for (std::size_t i = 0; i < free.size(); ++i) rhs.bodies[free[i]] += solid_inertia[i] * free_twists[free[i]];
   for (const StickingLiquid& s : sticking) {

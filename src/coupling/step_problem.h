@@ -25,7 +25,8 @@ namespace monolith {
 
 class StepProblem {
  public:
-  explicit StepProblem(const MacGrid& grid) : grid(grid) {}
+  explicit StepProblem(const MacGrid& grid, Discretisation discretisation = Discretisation::kFitted)
+      : grid(grid), discretisation(discretisation) {}
 
   // Geometry and material; liquid_distance in cell widths with its halo filled. Bodies must outlive the problem; in `solids` the
   // liquid that sticks to the bodies is moved to them.
@@ -45,11 +46,19 @@ class StepProblem {
   // solution x that holds the twists of all bodies.
   void results(StepVector& x, const Eigen::Vector3d& gravity, std::vector<Wrench>& liquid, double& divergence) const;
 
+  // Velocity of the liquid (m/s) <-> the unknown U of the face, in place.
+  void toUnknowns(FaceField<double>& velocity) const;
+  void toVelocities(FaceField<double>& unknowns) const;
+  // Liquid in a face's control volume: (rho h^3) liquidMass() u is its momentum.
+  FaceField<double> liquidMass() const;
+
   Eigen::Index bodyUnknowns() const { return static_cast<Eigen::Index>(6 * free.size()); }
 
   MacGrid grid;
+  Discretisation discretisation;
   StaggeredCoefficients<double> coefficients;
   BodyRows rows;
+  FaceField<double> flux_share;                 // U = flux_share u, 0 without an unknown; empty: U = u
   std::vector<PressureRegion> regions;
   std::vector<StaggeredCoefficients<float>> coarse;  // multigrid levels; [0] is left empty
   const std::vector<RigidBody>* bodies = nullptr;
@@ -66,6 +75,8 @@ class StepProblem {
   std::vector<EnclosedWeight> enclosed;         // in contacts, which liquid reaches from their rim
 
  private:
+  void assembleFitted(SolidFractions& solids, const std::vector<double>& liquid_distance);
+  void assembleFractions(SolidFractions& solids, const std::vector<double>& liquid_distance);
   double stickingVelocity(const StickingLiquid& s, const Vector6d& row, const Eigen::Vector3d& gravity) const;
   // Dimensionless impulse on a body by the weight of the liquid between a contact and its rim.
   Vector6d enclosedImpulse(const EnclosedWeight& weight, const Eigen::Vector3d& gravity) const;

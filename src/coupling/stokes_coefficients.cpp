@@ -112,13 +112,6 @@ double liquidPart(double distance_low, double distance_high) {
   return std::clamp(wet / (wet - dry), kLeastLiquid, 1.0 + 2.0 * kLeastLiquid);
 }
 
-Vector6d velocityRow(int axis, const Eigen::Vector3d& x, const Eigen::Vector3d& p_WBcm) {
-  Vector6d row;
-  row.head<3>() = Eigen::Vector3d::Unit(axis);
-  row.tail<3>() = (x - p_WBcm).cross(Eigen::Vector3d::Unit(axis));
-  return row;
-}
-
 void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double viscous_number,
                        StaggeredCoefficients<double>& out) {
   out.resize(l, viscous_number > 0.0);
@@ -193,37 +186,7 @@ void buildBodyRows(const MacGrid& grid, const SolidFractions& solids, const std:
   const double h = grid.h;
   out = BodyRows();
 
-  // J_p: sum over the faces of a cell of the flux that the body's part carries.
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const BodyFractions& f = solids.bodies[b];
-    for (int k = 0; k + 1 < f.count[2]; ++k) {
-      for (int j = 0; j + 1 < f.count[1]; ++j) {
-        for (int i = 0; i + 1 < f.count[0]; ++i) {
-          int at[3] = {f.low[0] + i, f.low[1] + j, f.low[2] + k};
-          int cell[3];
-          bool outside = false;
-          for (int a = 0; a < 3; ++a) {
-            cell[a] = l.periodic[a] ? ((at[a] % l.n[a]) + l.n[a]) % l.n[a] : at[a];
-            outside = outside || cell[a] < 0 || cell[a] >= l.n[a];
-          }
-          if (outside) continue;
-          const auto c = l.index(cell[0], cell[1], cell[2]);
-          Vector6d row = Vector6d::Zero();
-          for (int a = 0; a < 3; ++a) {
-            int next[3] = {i, j, k};
-            ++next[a];
-            const double low = f.face[a][f.local(i, j, k)];
-            const double high = f.face[a][f.local(next[0], next[1], next[2])];
-            // The lever arm of both faces is the same about the axis that counts, so equal fractions cancel exactly.
-            if (low == high) continue;
-            row += (high - low) * velocityRow(a, grid.faceCenter(a, at[0], at[1], at[2]), bodies[b].p_WBcm);
-          }
-          if (row.cwiseAbs().maxCoeff() == 0.0) continue;
-          (coefficients.has_pressure[c] ? out.divergence : out.enclosed).push_back({c, static_cast<int>(b), row});
-        }
-      }
-    }
-  }
+  buildDivergenceRows(grid, solids, bodies, coefficients, out);
   if (!coefficients.viscous) return;
 
   // J_s: every sample with an end in a body.

@@ -20,6 +20,7 @@
 #include <Eigen/Dense>
 #include <vector>
 
+#include "coupling/body_rows.h"
 #include "coupling/solid_fractions.h"
 #include "fluid/mac_grid.h"
 #include "rigid/rigid_body.h"
@@ -27,26 +28,8 @@
 
 namespace monolith {
 
-// Twist -> component `axis` of the velocity of the body's point at x.
-Vector6d velocityRow(int axis, const Eigen::Vector3d& x, const Eigen::Vector3d& p_WBcm);
-
 // W_L of the segment between two cell centres from the liquid's distance there.
 double liquidPart(double distance_low, double distance_high);
-
-// What the twist of a body adds to one sample: coefficient . twist.
-struct BodyRow {
-  std::ptrdiff_t sample = 0;
-  int body = 0;
-  Vector6d coefficient = Vector6d::Zero();
-};
-
-struct BodyRows {
-  std::vector<BodyRow> divergence;         // per cell with pressure
-  std::vector<BodyRow> enclosed;           // likewise, per cell without: see enclosed_rows.h
-  std::array<std::vector<BodyRow>, 3> normal;  // per cell: adds to U_a[c + a] - U_a[c]
-  std::array<std::vector<BodyRow>, 3> shear;   // per edge: adds to t
-  std::array<std::vector<BodyRow>, 3> drag;    // per sliver face: velocity of the solid there
-};
 
 struct StokesGeometry {
   const FaceField<double>* fluid = nullptr;           // W_F

@@ -20,27 +20,23 @@ double insideFraction(double distance, const Eigen::Vector3d& gradient, double w
   const double a = low ? alpha : 1.0 - alpha;
   const double n1 = n[0], n2 = n[1], n3 = n[2], n12 = n1 + n2;
   double volume = 0.0;
-  const auto cube = [](double x) { return x * x * x; };
-  // Thin slopes make the cubic forms divide by almost nothing; there the lower-dimensional form is exact.
+  // Where the plane is nearly parallel to faces of the cube the forms that divide by n1 n2 would lose every digit; they are
+  // used only where their terms are as small as the divisor, and n1 of almost nothing is none.
   constexpr double kTiny = 1e-9;
-  if (n2 < kTiny) {
-    volume = a / n3;
+  if (a >= n12 && n12 <= n3) {
+    volume = (2.0 * a - n12) / (2.0 * n3);
   } else if (n1 < kTiny) {
-    if (a < n2) {
-      volume = a * a / (2.0 * n2 * n3);
-    } else if (a < n3) {
-      volume = (2.0 * a - n2) / (2.0 * n3);
-    } else {
-      volume = (2.0 * a - n2) / (2.0 * n3) - (a - n3) * (a - n3) / (2.0 * n2 * n3);
-    }
+    // One of the two sides of the trapezoid, less what lies beyond the cube.
+    const double beyond = std::max(a - n3, 0.0);
+    volume = a < n2 ? a * a / (2.0 * n2 * n3) : (2.0 * a - n2) / (2.0 * n3) - beyond * beyond / (2.0 * n2 * n3);
+  } else if (a < n1) {
+    volume = a * a * a / (6.0 * n1 * n2 * n3);
+  } else if (a < n2) {
+    volume = (a * (a - n1) + n1 * n1 / 3.0) / (2.0 * n2 * n3);
   } else {
-    const double scale = 6.0 * n1 * n2 * n3;
-    volume = cube(a);
-    if (a > n1) volume -= cube(a - n1);
-    if (a > n2) volume -= cube(a - n2);
-    if (a > n3) volume -= cube(a - n3);
-    if (a > n12) volume += cube(a - n12);
-    volume /= scale;
+    const auto less = [&](double m) { return m * m * (m - 3.0 * a); };
+    const double sum = a < n3 ? a * a * (3.0 * n12 - a) : a * a * (3.0 - 2.0 * a) + less(n3);
+    volume = (sum + less(n1) + less(n2)) / (6.0 * n1 * n2 * n3);
   }
   volume = std::clamp(volume, 0.0, 1.0);
   return low ? volume : 1.0 - volume;

@@ -69,10 +69,13 @@ struct BodyDescription {
 // How a step is solved (DESIGN 2) and contact coupled; the answer is the same.
 enum class SolverName { kFast, kDirect, kReference };
 enum class CouplingName { kUnified, kIterative };
+// How solids bound the liquid (DESIGN 1.4): fitted gradients, or the paper's volume fractions.
+enum class Discretisation { kFitted, kFractions };
 
 struct SolverDescription {
   SolverName name = SolverName::kFast;
   CouplingName coupling = CouplingName::kUnified;
+  Discretisation discretisation = Discretisation::kFitted;
   double tolerance = 1e-5;        // relative residual of the coupled solve
   int maximum_iterations = 200;   // of one coupled solve
   int threads = 0;                // 0: as many as the machine has; never changes a result

@@ -108,7 +108,7 @@ void readLiquid(const YAML::Node& node, const TankDescription& tank, bool tank_u
 }
 
 void readSolver(const YAML::Node& node, SolverDescription& solver, Violations& violations) {
-  const YamlMap map(node, "solver", {"name", "coupling", "tolerance", "maximum_iterations", "threads", "cfl"},
+  const YamlMap map(node, "solver", {"name", "coupling", "discretisation", "tolerance", "maximum_iterations", "threads", "cfl"},
                     violations);
   const std::string name = map.readWord("name", "fast", {"fast", "direct", "reference"});
   solver.name = name == "direct"      ? SolverName::kDirect
@@ -116,6 +116,9 @@ void readSolver(const YAML::Node& node, SolverDescription& solver, Violations& v
                                       : SolverName::kFast;
   if (map.readWord("coupling", "unified", {"unified", "iterative"}) == "iterative") {
     solver.coupling = CouplingName::kIterative;
+  }
+  if (map.readWord("discretisation", "fitted", {"fitted", "fractions"}) == "fractions") {
+    solver.discretisation = Discretisation::kFractions;
   }
   map.read("tolerance", solver.tolerance, Range::kPositive);
   if (solver.tolerance >= 1.0) map.fail("tolerance", "a relative residual below 1");

@@ -74,7 +74,7 @@ std::vector<double> hydrostaticPressure(const MacGrid& grid, const FreeSurface& 
   return pressure;
 }
 
-LiquidBudget liquidBudget(const MacGrid& grid, const StaggeredCoefficients<double>& coefficients,
+LiquidBudget liquidBudget(const MacGrid& grid, const FaceField<double>& liquid_mass,
                           const FaceField<double>& velocity, const FreeSurface& surface,
                           const std::vector<double>& cell_fluid, double density, const Eigen::Vector3d& gravity) {
   const Lattice& l = grid.lattice;
@@ -84,7 +84,7 @@ LiquidBudget liquidBudget(const MacGrid& grid, const StaggeredCoefficients<doubl
       for (int i = 0; i < l.faceEnd(0); ++i) {
         const auto c = l.index(i, j, k);
         for (int a = 0; a < 3; ++a) {
-          const double momentum = coefficients.mass[a][c] * velocity[a][c];
+          const double momentum = liquid_mass[a][c] * velocity[a][c];
           budget.momentum[a] += momentum;
           budget.kinetic += 0.5 * momentum * velocity[a][c];
         }

@@ -23,12 +23,13 @@ void completeVelocity(const MacGrid& grid, const StaggeredCoefficients<double>& 
 std::vector<double> hydrostaticPressure(const MacGrid& grid, const FreeSurface& surface, double density,
                                         const Eigen::Vector3d& gravity);
 
+// liquid_mass: liquid part of each face's control volume.
 struct LiquidBudget {
   double kinetic = 0.0;    // J
   double potential = 0.0;  // J, zero at the world's origin
   Eigen::Vector3d momentum = Eigen::Vector3d::Zero();  // kg m/s, in W
 };
-LiquidBudget liquidBudget(const MacGrid& grid, const StaggeredCoefficients<double>& coefficients,
+LiquidBudget liquidBudget(const MacGrid& grid, const FaceField<double>& liquid_mass,
                           const FaceField<double>& velocity, const FreeSurface& surface,
                           const std::vector<double>& cell_fluid, double density, const Eigen::Vector3d& gravity);
 

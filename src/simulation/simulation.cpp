@@ -49,7 +49,7 @@ struct State {
 struct Simulation::Impl {
   explicit Impl(const Scene& s)
       : scene(s), grid(makeGrid(s.tank, s.liquid)), walls(makeWalls(s.tank)), sampler(grid),
-        system(grid, s.solver.name, s.solver.coupling), laws(s) {}
+        system(grid, s.solver.name, s.solver.coupling, s.solver.discretisation), laws(s) {}
 
   static TankWalls makeWalls(const TankDescription& tank) {
     TankWalls walls;
@@ -221,7 +221,7 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
 void Simulation::Impl::measure(StepReport& step) const {
   if (hasLiquid()) {
     step.liquid_volume = state.surface[0].volume(solids.cell_fluid);
-    const LiquidBudget budget = liquidBudget(grid, system.coefficients(), state.coupled.velocity, state.surface[0],
+    const LiquidBudget budget = liquidBudget(grid, system.problem().liquidMass(), state.coupled.velocity, state.surface[0],
                                              solids.cell_fluid, scene.liquid.density, scene.gravity);
     step.kinetic_energy = budget.kinetic + sticking_energy;
     step.potential_energy = budget.potential;

@@ -47,6 +47,24 @@ TEST(CubeFraction, BothSidesOfAPlaneFillTheCube) {
   }
 }
 
+// To first order in a slope the part depends on the plane's height at the centre alone, however slight the slope is.
+TEST(CubeFraction, NearlyParallelPlanesKeepTheirDigits) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  for (double slight = 1e-3; slight > 1e-14; slight *= 0.3) {
+    for (int trial = 0; trial < 20; ++trial) {
+      const double height = 0.4 * unit(random);
+      const Eigen::Vector3d along_an_axis(slight * unit(random), slight * unit(random), 1.0);
+      EXPECT_NEAR(insideFraction(height / along_an_axis.norm(), along_an_axis, 1.0), 0.5 - height, 1e-12);
+      // Half of the cube's diagonal plane: the part below a + b = alpha of the unit square is alpha^2/2.
+      const double alpha = 0.5 + 0.4 * unit(random);
+      const Eigen::Vector3d diagonal(1.0, 1.0, slight * unit(random));
+      const double part = insideFraction((1.0 - alpha) / diagonal.norm(), diagonal, 1.0);
+      EXPECT_NEAR(part, 0.5 * alpha * alpha, slight * slight + 1e-8);
+    }
+  }
+}
+
 TEST(CubeFraction, FarPlanesAreAllOrNothing) {
   EXPECT_EQ(insideFraction(2.0, Eigen::Vector3d::UnitX(), 1.0), 0.0);
   EXPECT_EQ(insideFraction(-2.0, Eigen::Vector3d::UnitX(), 1.0), 1.0);

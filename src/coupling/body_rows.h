@@ -1,0 +1,37 @@
+#pragma once
+// The bodies' columns of the step, row by row: J_p and J_s of DESIGN 1.2.
+
+#include <array>
+#include <vector>
+
+#include "coupling/solid_fractions.h"
+#include "fluid/mac_grid.h"
+#include "rigid/rigid_body.h"
+#include "solve/staggered_operator.h"
+
+namespace monolith {
+
+// Twist -> component `axis` of the velocity of the body's point at x.
+Vector6d velocityRow(int axis, const Eigen::Vector3d& x, const Eigen::Vector3d& p_WBcm);
+
+// What the twist of a body adds to one sample: coefficient . twist.
+struct BodyRow {
+  std::ptrdiff_t sample = 0;
+  int body = 0;
+  Vector6d coefficient = Vector6d::Zero();
+};
+
+struct BodyRows {
+  std::vector<BodyRow> divergence;         // per cell with pressure
+  std::vector<BodyRow> enclosed;           // likewise, per cell without: see enclosed_rows.h
+  std::array<std::vector<BodyRow>, 3> normal;  // per cell: adds to U_a[c + a] - U_a[c]
+  std::array<std::vector<BodyRow>, 3> shear;   // per edge: adds to t
+  std::array<std::vector<BodyRow>, 3> drag;    // per sliver face: velocity of the solid there
+};
+
+// J_p: the flux that a body's part of the faces carries out of each cell, from differences of neighbouring W_Si.
+// Appends to divergence and enclosed.
+void buildDivergenceRows(const MacGrid& grid, const SolidFractions& solids, const std::vector<RigidBody>& bodies,
+                         const StaggeredCoefficients<double>& coefficients, BodyRows& out);
+
+}  // namespace monolith

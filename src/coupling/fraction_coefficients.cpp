@@ -1,0 +1,245 @@
+#include "coupling/fraction_coefficients.h"
+
+#include <cmath>
+
+#include "solve/staggered_transfer.h"
+
+namespace monolith {
+namespace {
+
+using Cell = std::array<int, 3>;
+
+// Less of a face than this is closed.
+constexpr double kLeastFluid = 0.05;
+// Less liquid than this in a face is none: no tiny pivots.
+constexpr double kLeastLiquid = 1e-3;
+
+// Place of a cell of a body's box in the grid; -1 where neither cells nor, along the axes in `beyond`, edges are.
+std::ptrdiff_t gridIndex(const Lattice& l, Cell at, const std::array<bool, 3>& beyond) {
+  for (int a = 0; a < 3; ++a) {
+    if (l.periodic[a]) {
+      at[a] = ((at[a] % l.n[a]) + l.n[a]) % l.n[a];
+    } else if (at[a] < 0 || at[a] >= l.n[a] + (beyond[a] ? 1 : 0)) {
+      return -1;
+    }
+  }
+  return l.index(at[0], at[1], at[2]);
+}
+
+// The rows of one body, from its fractions of the faces around each sample.
+class RowBuilder {
+ public:
+  RowBuilder(const MacGrid& grid, const BodyFractions& fractions, const RigidBody& body, int index,
+             const StaggeredCoefficients<double>& coefficients)
+      : grid_(grid), fractions_(fractions), body_(body), index_(index), coefficients_(coefficients) {}
+
+  // W(c + a) row(x + h a) - W(c) row(x): along its own axis a rigid motion does not change.
+  void addNormal(int a, const Cell& local, const Cell& at, std::vector<BodyRow>& out) const {
+    const auto c = gridIndex(grid_.lattice, at, {false, false, false});
+    if (c < 0 || !(coefficients_.normal[a][c] > 0.0)) return;
+    Cell next = local;
+    ++next[a];
+    const double difference = fraction(a, next) - fraction(a, local);
+    if (difference == 0.0) return;
+    out.push_back({c, index_, difference * velocityRow(a, grid_.faceCenter(a, at[0], at[1], at[2]), body_.p_WBcm)});
+  }
+
+  // Component a differs along b and component b along a. About the middle x of the edge each difference is that of the
+  // fractions times row(x), plus their mean times the rotation's part; the two rotations are opposite.
+  void addShear(int pair, const Cell& local, const Cell& at, std::vector<BodyRow>& out) const {
+    const auto [a, b] = kShearPairs[pair];
+    std::array<bool, 3> beyond = {false, false, false};
+    beyond[a] = beyond[b] = true;
+    const auto e = gridIndex(grid_.lattice, at, beyond);
+    if (e < 0 || !(coefficients_.shear[pair][0][e] > 0.0)) return;
+    Cell below_a = local, below_b = local;
+    --below_b[b];
+    --below_a[a];
+    const double a_low = fraction(a, below_b), a_high = fraction(a, local);
+    const double b_low = fraction(b, below_a), b_high = fraction(b, local);
+    const double rotation = 0.5 * grid_.h * ((a_high + a_low) - (b_high + b_low));
+    if (a_high == a_low && b_high == b_low && rotation == 0.0) return;
+    Eigen::Vector3d x = grid_.faceCenter(a, at[0], at[1], at[2]);
+    x[b] -= 0.5 * grid_.h;
+    Vector6d row = (a_high - a_low) * velocityRow(a, x, body_.p_WBcm) + (b_high - b_low) * velocityRow(b, x, body_.p_WBcm);
+    row.tail<3>() += rotation * Eigen::Vector3d::Unit(b).cross(Eigen::Vector3d::Unit(a));
+    out.push_back({e, index_, coefficients_.shear[pair][0][e] * row});
+  }
+
+ private:
+  double fraction(int a, const Cell& local) const {
+    for (int d = 0; d < 3; ++d) {
+      if (local[d] < 0 || local[d] >= fractions_.count[d]) return 0.0;
+    }
+    return fractions_.face[a][fractions_.local(local[0], local[1], local[2])];
+  }
+
+  const MacGrid& grid_;
+  const BodyFractions& fractions_;
+  const RigidBody& body_;
+  int index_;
+  const StaggeredCoefficients<double>& coefficients_;
+};
+
+void addStressRows(const MacGrid& grid, const BodyFractions& fractions, const RigidBody& body, int index,
+                   const StaggeredCoefficients<double>& coefficients, BodyRows& out) {
+  const RowBuilder builder(grid, fractions, body, index, coefficients);
+  for (int k = 0; k < fractions.count[2]; ++k) {
+    for (int j = 0; j < fractions.count[1]; ++j) {
+      for (int i = 0; i < fractions.count[0]; ++i) {
+        const Cell local = {i, j, k};
+        const Cell at = {fractions.low[0] + i, fractions.low[1] + j, fractions.low[2] + k};
+        for (int q = 0; q < 3; ++q) {
+          builder.addNormal(q, local, at, out.normal[q]);
+          builder.addShear(q, local, at, out.shear[q]);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void closeSlivers(const MacGrid& grid, SolidFractions& solids) {
+  const Lattice& l = grid.lattice;
+  for (int a = 0; a < 3; ++a) {
+    auto& fluid = solids.fluid[a];
+    const auto isSliver = [&](double open) { return open > 0.0 && open < kLeastFluid; };
+    std::array<bool, 3> beyond = {false, false, false};
+    beyond[a] = true;
+    for (BodyFractions& f : solids.bodies) {
+      for (int k = 0; k < f.count[2]; ++k) {
+        for (int j = 0; j < f.count[1]; ++j) {
+          for (int i = 0; i < f.count[0]; ++i) {
+            double& part = f.face[a][f.local(i, j, k)];
+            if (part == 0.0) continue;
+            const double open = fluid[gridIndex(l, {f.low[0] + i, f.low[1] + j, f.low[2] + k}, beyond)];
+            if (isSliver(open)) part /= 1.0 - open;
+          }
+        }
+      }
+    }
+    for (double& open : fluid) {
+      if (isSliver(open)) open = 0.0;
+    }
+  }
+}
+
+FractionGeometry sampleFractions(const MacGrid& grid, const std::vector<RigidBody>& bodies, const SolidFractions& solids,
+                                 const std::vector<double>& liquid_distance, bool viscous) {
+  FractionGeometry geometry;
+  geometry.fluid = solids.fluid;
+  std::vector<StressFractions> parts;
+  if (viscous) sampleStressFractions(grid, bodies, solids, geometry.stress, parts);
+  sampleLiquidFractions(grid.lattice, liquid_distance, viscous, geometry.liquid);
+  return geometry;
+}
+
+void buildFractionCoefficients(const Lattice& l, const FractionGeometry& g, double viscous_number,
+                               StaggeredCoefficients<double>& out) {
+  out.resize(l, viscous_number > 0.0);
+  const int width = l.faceEnd(0);
+  forEachRow(l, [&](std::ptrdiff_t row, int, int) {
+    for (auto f = row; f < row + width; ++f) {
+      for (int a = 0; a < 3; ++a) {
+        if (g.fluid[a][f] < kLeastFluid || g.liquid.face[a][f] < kLeastLiquid) continue;
+        out.mass[a][f] = g.liquid.face[a][f] / g.fluid[a][f];
+        out.open[a][f] = 1.0;
+      }
+    }
+  });
+  for (int a = 0; a < 3; ++a) {
+    fillHalo(l, out.mass[a]);
+    fillHalo(l, out.open[a]);
+  }
+  const auto isOpen = [&](int a, std::ptrdiff_t f) { return out.mass[a][f] > 0.0; };
+  const auto isClosed = [&](int a, std::ptrdiff_t f) { return g.fluid[a][f] < kLeastFluid; };
+  // Open, but without inertia: its velocity is whatever costs nothing.
+  const auto isAir = [&](int a, std::ptrdiff_t f) { return !isOpen(a, f) && !isClosed(a, f); };
+  forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
+    for (auto c = row; c < row + l.n[0]; ++c) {
+      if (j >= l.n[1] || k >= l.n[2] || !(g.liquid.cell[c] > 0.0)) continue;
+      bool open = false, air = false;
+      for (int a = 0; a < 3; ++a) {
+        for (const auto f : {c, c + l.stride[a]}) {
+          open = open || isOpen(a, f);
+          air = air || isAir(a, f);
+        }
+      }
+      out.has_pressure[c] = open && !air;
+    }
+  });
+  if (!out.viscous) return;
+
+  forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
+    for (int i = 0; i < width; ++i) {
+      const auto c = row + i;
+      if (i < l.n[0] && j < l.n[1] && k < l.n[2]) {
+        for (int a = 0; a < 3; ++a) {
+          if (isAir(a, c) || isAir(a, c + l.stride[a])) continue;
+          out.normal[a][c] = 2.0 * viscous_number * g.liquid.cell[c] * g.stress.cell[c];
+        }
+      }
+      for (int p = 0; p < 3; ++p) {
+        const auto [a, b] = kShearPairs[p];
+        if (isAir(a, c) || isAir(a, c - l.stride[b]) || isAir(b, c) || isAir(b, c - l.stride[a])) continue;
+        const double factor = std::sqrt(viscous_number * g.liquid.edge[p][c] * g.stress.edge[p][c]);
+        out.shear[p][0][c] = factor;
+        out.shear[p][1][c] = factor;
+      }
+    }
+  });
+  for (int a = 0; a < 3; ++a) {
+    fillHalo(l, out.normal[a]);
+    for (int s = 0; s < 2; ++s) fillHalo(l, out.shear[a][s]);
+  }
+}
+
+void buildFractionRows(const MacGrid& grid, const SolidFractions& solids, const std::vector<RigidBody>& bodies,
+                       const StaggeredCoefficients<double>& coefficients, BodyRows& out) {
+  out = BodyRows();
+  buildDivergenceRows(grid, solids, bodies, coefficients, out);
+  if (!coefficients.viscous) return;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    addStressRows(grid, solids.bodies[b], bodies[b], static_cast<int>(b), coefficients, out);
+  }
+}
+
+void buildCoarseFractionLevels(const Lattice& lattice, const FractionGeometry& geometry,
+                               const std::vector<double>& liquid_distance, double viscous_number,
+                               std::vector<StaggeredCoefficients<float>>& levels) {
+  const bool viscous = viscous_number > 0.0;
+  Lattice l = lattice;
+  FractionGeometry g = geometry;
+  std::vector<double> distance = liquid_distance;
+  StaggeredCoefficients<double> coefficients;
+  std::size_t count = 1;
+  while (canCoarsen(l)) {
+    const Lattice coarse = coarsened(l);
+    std::vector<double> to;
+    for (int a = 0; a < 3; ++a) {
+      restrictFaces(l, a, g.fluid[a], coarse, to);
+      fillHalo(coarse, to);
+      g.fluid[a].swap(to);
+    }
+    if (viscous) {
+      restrictCells(l, g.stress.cell, coarse, to);
+      fillHalo(coarse, to);
+      g.stress.cell.swap(to);
+      edgesFromCells(coarse, g.stress);
+    }
+    restrictCells(l, distance, coarse, to);
+    for (double& d : to) d *= 0.5;
+    extendIntoHalo(coarse, to);
+    distance.swap(to);
+    sampleLiquidFractions(coarse, distance, viscous, g.liquid);
+    viscous_number *= 0.25;
+    l = coarse;
+    buildFractionCoefficients(l, g, viscous_number, coefficients);
+    if (levels.size() <= count) levels.emplace_back();
+    levels[count++] = convertCoefficients<float>(coefficients);
+  }
+  levels.resize(count);
+}
+
+}  // namespace monolith

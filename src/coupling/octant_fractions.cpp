@@ -1,0 +1,30 @@
+#include "coupling/octant_fractions.h"
+
+#include <cmath>
+
+#include "geometry/cube_fraction.h"
+
+namespace monolith {
+
+void octantFractions(const SignedDistance& solid, const Eigen::Vector3d& center, const Eigen::Matrix3d& R_WB,
+                     double width, Octants& out) {
+  const auto corner = [&](int o, double by) -> Eigen::Vector3d {
+    return R_WB.transpose() * (by * Eigen::Vector3d((o & 1) ? 1 : -1, (o & 2) ? 1 : -1, (o & 4) ? 1 : -1));
+  };
+  for (int o = 0; o < 8; ++o) {
+    const Eigen::Vector3d octant = center + corner(o, 0.25 * width);
+    const double distance = solid.distance(octant);
+    if (std::abs(distance) > 0.4331 * width) {
+      out[o] = distance < 0.0 ? 1.0 : 0.0;
+      continue;
+    }
+    double sum = 0.0;
+    for (int q = 0; q < 8; ++q) {
+      const DistanceSample s = solid.sample(octant + corner(q, 0.125 * width));
+      sum += insideFraction(s.distance, R_WB * s.gradient, 0.25 * width);
+    }
+    out[o] = 0.125 * sum;
+  }
+}
+
+}  // namespace monolith
