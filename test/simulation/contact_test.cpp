@@ -1,0 +1,142 @@
+// Friction, restitution and the choice of what a step models, through whole simulations.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "simulation/contact_laws.h"
+#include "simulation/simulation.h"
+
+namespace monolith {
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+
+BodyDescription body(const std::string& name, Shape::Kind kind, const Eigen::Vector3d& size, double density,
+                     const Eigen::Vector3d& position) {
+  BodyDescription out;
+  out.name = name;
+  Shape shape;
+  shape.kind = kind;
+  shape.box_size = size;
+  shape.radius = 0.5 * size[0];
+  shape.name = name;
+  out.shapes = {shape};
+  out.mass = density * volume(shape);
+  const Eigen::Vector3d s = size.cwiseProduct(size);
+  out.inertia_Bcm = out.mass / 12.0 * Eigen::Vector3d(s[1] + s[2], s[0] + s[2], s[0] + s[1]).asDiagonal();
+  out.X_WB.translation() = position;
+  return out;
+}
+
+// A box on a floor that is tilted by `angle`, in a full tank or a dry one.
+Scene slope(double angle, bool wet) {
+  Scene scene;
+  scene.source = "test";
+  scene.tank.size = {0.6, 0.4, 0.3};
+  scene.tank.cell_width = 0.05;
+  scene.liquid.dynamic_viscosity = 0.1;
+  scene.liquid.fill_level = wet ? 0.3 : 0.0;
+  scene.gravity = 9.81 * Eigen::Vector3d(std::sin(angle), 0.0, -std::cos(angle));
+  scene.contact.friction = 0.5;
+  scene.bodies.push_back(body("box", Shape::Kind::kBox, {0.16, 0.16, 0.1}, 2500.0, {0.2, 0.2, 0.05}));
+  return scene;
+}
+
+double slide(const Scene& scene, int steps) {
+  Simulation simulation(scene);
+  for (int i = 0; i < steps; ++i) {
+    const StepReport r = simulation.step();
+    EXPECT_TRUE(r.committed()) << r.message;
+  }
+  return simulation.bodyStates()[0].X_WB.translation()[0] - 0.2;
+}
+
+TEST(Friction, BoxSticksBelowTheFrictionAngleAndSlidesAbove) {
+  const double threshold = std::atan(0.5);
+  for (const bool wet : {false, true}) {
+    EXPECT_LT(std::abs(slide(slope(threshold - 0.1 * kDegree, wet), 100)), 1e-7) << wet;
+    EXPECT_GT(slide(slope(threshold + 0.1 * kDegree, wet), 20), 1e-5) << wet;
+  }
+}
+
+TEST(Friction, DrySlidingIsCoulombs) {
+  const double angle = 35.0 * kDegree, dt = 0.02;
+  const double a = 9.81 * (std::sin(angle) - 0.5 * std::cos(angle));
+  EXPECT_NEAR(slide(slope(angle, false), 15), 0.5 * a * dt * dt * 15 * 16, 1e-7);
+}
+
+TEST(Friction, OfAContactOutOfReachChangesNoBit) {
+  Scene scene = slope(0.0, true);
+  scene.bodies[0].X_WB.translation()[2] = 0.2;
+  Scene smooth = scene;
+  smooth.contact.friction = 0.0;
+  Simulation a(scene), b(smooth);
+  for (int i = 0; i < 2; ++i) {
+    const StepReport r = a.step();
+    ASSERT_TRUE(r.committed());
+    EXPECT_EQ(r.model.contacts, 0);
+    EXPECT_FALSE(r.model.friction);
+    ASSERT_TRUE(b.step().committed());
+  }
+  EXPECT_EQ(a.bodies()[0].twist, b.bodies()[0].twist);
+  EXPECT_EQ(a.bodies()[0].p_WBcm, b.bodies()[0].p_WBcm);
+}
+
+TEST(Restitution, BallReboundsAtItsShareOfTheSpeedAndComesToRest) {
+  Scene scene = slope(0.0, false);
+  scene.time_step = 0.002;
+  scene.contact.restitution = 0.8;
+  scene.bodies[0] = body("ball", Shape::Kind::kSphere, {0.1, 0.1, 0.1}, 1000.0, {0.3, 0.2, 0.15});
+  Simulation simulation(scene);
+  double down = 0.0, up = 0.0;
+  for (int i = 0; i < 120; ++i) {
+    ASSERT_TRUE(simulation.step().committed());
+    const double v = simulation.bodyStates()[0].velocity[2];
+    down = std::min(down, v);
+    up = std::max(up, v);
+  }
+  EXPECT_NEAR(down, -std::sqrt(2.0 * 9.81 * 0.1), 0.03);
+  EXPECT_NEAR(up / -down, 0.8, 0.02);
+  for (int i = 0; i < 1500; ++i) ASSERT_TRUE(simulation.step().committed());
+  EXPECT_LT(std::abs(simulation.bodyStates()[0].velocity[2]), 1e-6);
+  EXPECT_NEAR(simulation.bodyStates()[0].X_WB.translation()[2], 0.05, 1e-4);
+}
+
+TEST(ContactLaws, BodiesWinOverMaterialsAndThoseOverTheDefault) {
+  Scene scene;
+  for (const char* name : {"a", "b", "c"}) {
+    BodyDescription description;
+    description.name = name;
+    description.material = std::string(name) == "c" ? "" : "rubber";
+    scene.bodies.push_back(description);
+  }
+  scene.contact.friction = 0.1;
+  scene.contact.pairs = {{"rubber", "rubber", 0.2, 0.0}, {"walls", "rubber", 0.3, 0.0}, {"b", "a", 0.4, 0.5},
+                         {"rubber", "c", 0.6, 0.0}};
+  const ContactLaws laws(scene);
+  EXPECT_EQ(laws.of(0, 1).friction, 0.4);
+  EXPECT_EQ(laws.of(1, 0).restitution, 0.5);
+  EXPECT_EQ(laws.of(0, Contact::kWall).friction, 0.3);
+  EXPECT_EQ(laws.of(0, 2).friction, 0.6);
+  EXPECT_EQ(laws.of(2, Contact::kWall).friction, 0.1);
+}
+
+// A liquid that is hardly viscous moves a body as one without viscosity does, which has no stress block.
+TEST(ModelSelection, LeavingOutTheStressBlockChangesTheAnswerByNoMoreThanItsSize) {
+  Scene scene = slope(0.0, true);
+  scene.bodies[0].X_WB.translation()[2] = 0.15;
+  scene.solver.tolerance = 1e-9;
+  Scene inviscid = scene;
+  inviscid.liquid.dynamic_viscosity = 0.0;
+  scene.liquid.dynamic_viscosity = 1e-10;
+  Simulation a(scene), b(inviscid);
+  const StepReport with = a.step(), without = b.step();
+  ASSERT_TRUE(with.committed() && without.committed());
+  EXPECT_TRUE(with.model.viscosity);
+  EXPECT_FALSE(without.model.viscosity);
+  EXPECT_LT((a.bodies()[0].twist - b.bodies()[0].twist).norm(), 1e-6 * b.bodies()[0].twist.norm());
+}
+
+}  // namespace
+}  // namespace monolith
