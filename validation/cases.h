@@ -21,6 +21,8 @@ bool runVolume(double seconds);
 bool runSlope();
 // A set of scenes by every solver, coupling and discretisation: error, iterations, time, memory.
 bool runSolvers();
+// What each part of the model costs.
+bool runBlocks();
 // Seconds per step and stage of the drop scene at several sizes and thread counts.
 bool runBench();
 

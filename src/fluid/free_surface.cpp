@@ -107,6 +107,8 @@ void FreeSurface::redistance() {
           double slope = 0.5 * (high - low);
           if (cut_low && !cut_high) slope = d - low;
           if (cut_high && !cut_low) slope = high - d;
+          // A bubble or drop of one cell: its two sides cancel in the central difference.
+          if (cut_low && cut_high) slope = std::max(std::abs(d - low), std::abs(high - d));
           slope2 += slope * slope;
         }
         if (!near) continue;
