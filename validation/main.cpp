@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
   const std::map<std::string, std::function<bool()>> cases = {
       {"array", runSphereArray},      {"hydrostatics", runHydrostatics}, {"settling", runSettling},
       {"volume", [] { return runVolume(60.0); }}, {"bench", runBench},             {"slope", runSlope},
+      {"channel", runChannel},
   };
   if (argc < 2) {
     std::printf("usage: monolith_cases CASE...\ncases:");

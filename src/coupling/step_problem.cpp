@@ -17,7 +17,8 @@ constexpr double kFluxTolerance = 1e-7;
 }  // namespace
 
 void StepProblem::assemble(SolidFractions& solids, const std::vector<RigidBody>& all_bodies,
-                           const std::vector<double>& liquid_distance, double density, double viscosity, double step) {
+                           const std::vector<double>& liquid_distance, double density, double viscosity, double step,
+                           bool rates) {
   bodies = &all_bodies;
   dt = step;
   viscous_number = viscosity * dt / (density * grid.h * grid.h);
@@ -32,7 +33,8 @@ void StepProblem::assemble(SolidFractions& solids, const std::vector<RigidBody>&
     }
   }
   const StokesGeometry geometry{&solids.fluid, &solids.distance, &liquid_distance};
-  buildCoefficients(grid.lattice, geometry, viscous_number, coefficients);
+  buildCoefficients(grid.lattice, geometry, viscous_number, coefficients, rates ? &strain : nullptr);
+  cell_viscosity.clear();
   buildBodyRows(grid, solids, all_bodies, geometry, coefficients, rows);
   enclosed = moveEnclosedRows(grid, solids, all_bodies, coefficients, liquid_distance, rows);
   if (coarse.empty()) coarse.resize(1);
