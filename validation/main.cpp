@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
       {"array", runSphereArray},      {"hydrostatics", runHydrostatics}, {"settling", runSettling},
       {"volume", [] { return runVolume(60.0); }}, {"bench", runBench},             {"slope", runSlope},
       {"solvers", runSolvers},        {"blocks", runBlocks},
+      {"channel", runChannel},
   };
   if (argc < 2) {
     std::printf("usage: monolith_cases CASE...\ncases:");

@@ -31,7 +31,26 @@ struct CoupledSystem::Impl {
   StepProblem problem;
   std::unique_ptr<StepSolver> solver;
   CouplingName coupling;
+  VariableViscosity viscosity;
   StepVector rhs, x;
+
+  // Velocities and pressures of a state where they are unknowns; all twists.
+  void load(const CoupledState& state) {
+    const Lattice& l = problem.grid.lattice;
+    x.resize(l, problem.bodies->size());
+    for (int a = 0; a < 3; ++a) {
+      for (std::size_t i = 0; i < l.size; ++i) {
+        x.velocity[a][i] = problem.coefficients.mass[a][i] > 0.0 ? state.velocity[a][i] : 0.0;
+      }
+      clearHalo(l, x.velocity[a]);
+    }
+    problem.toUnknowns(x.velocity);
+    for (std::size_t i = 0; i < l.size; ++i) {
+      x.pressure[i] = problem.coefficients.has_pressure[i] ? state.pressure[i] / problem.pressure_scale : 0.0;
+    }
+    clearHalo(l, x.pressure);
+    x.bodies = state.twists;
+  }
 };
 
 CoupledSystem::CoupledSystem(const MacGrid& grid, SolverName solver, CouplingName coupling,
@@ -72,6 +91,30 @@ void CoupledSystem::assemble(SolidFractions& solids, const std::vector<RigidBody
   impl_->solver->prepare(impl_->problem);
 }
 
+void CoupledSystem::assembleVariable(SolidFractions& solids, const std::vector<RigidBody>& bodies,
+                                     const std::vector<double>& liquid_distance, double density, double reference,
+                                     double dt) {
+  impl_->problem.assemble(solids, bodies, liquid_distance, density, reference, dt, true);
+  impl_->viscosity.start(impl_->problem, reference);
+}
+
+void CoupledSystem::evaluateViscosity(const ViscosityLaw& law, const CoupledState& state, ViscosityField& field) {
+  impl_->load(state);
+  impl_->viscosity.evaluate(impl_->problem, law, impl_->x, field);
+}
+
+void CoupledSystem::setViscosity(const ViscosityField& field) {
+  impl_->viscosity.apply(field, impl_->problem);
+  impl_->solver->prepare(impl_->problem);
+}
+
+double CoupledSystem::viscousChange(const CoupledState& solution, const ViscosityField& next) {
+  impl_->load(solution);
+  const double scale = stepNorm(impl_->problem, impl_->rhs);
+  const double change = impl_->viscosity.change(impl_->problem, next, impl_->x);
+  return scale > 0.0 ? change / scale : change;
+}
+
 CoupledReport CoupledSystem::solve(const FaceField<double>& free_velocity, const std::vector<Vector6d>& free_twists,
                                    const std::vector<Contact>& contacts, const std::vector<ContactLaw>& laws,
                                    const Eigen::Vector3d& gravity, const CoupledOptions& options,
@@ -87,19 +130,7 @@ CoupledReport CoupledSystem::solve(const FaceField<double>& free_velocity, const
   }
 
   // Initial guess.
-  m.x.resize(l, p.bodies->size());
-  for (int a = 0; a < 3; ++a) {
-    for (std::size_t i = 0; i < l.size; ++i) {
-      m.x.velocity[a][i] = p.coefficients.mass[a][i] > 0.0 ? state.velocity[a][i] : 0.0;
-    }
-    clearHalo(l, m.x.velocity[a]);
-  }
-  p.toUnknowns(m.x.velocity);
-  for (std::size_t i = 0; i < l.size; ++i) {
-    m.x.pressure[i] = p.coefficients.has_pressure[i] ? state.pressure[i] / p.pressure_scale : 0.0;
-  }
-  clearHalo(l, m.x.pressure);
-  m.x.bodies = state.twists;
+  m.load(state);
   for (std::size_t b = 0; b < p.bodies->size(); ++b) {
     if (p.free_index[b] < 0) m.x.bodies[b] = free_twists[b];
   }

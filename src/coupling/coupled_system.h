@@ -7,6 +7,7 @@
 
 #include "coupling/contact_rows.h"
 #include "coupling/step_solver.h"
+#include "coupling/variable_viscosity.h"
 
 namespace monolith {
 
@@ -29,6 +30,15 @@ class CoupledSystem {
   // outlive the solve; in `solids` the liquid that sticks to the bodies is moved to them (sticking_liquid.h).
   void assemble(SolidFractions& solids, const std::vector<RigidBody>& bodies,
                 const std::vector<double>& liquid_distance, double density, double viscosity, double dt);
+
+  // The same with a viscosity that varies, `reference` its scale: to be followed by setViscosity() before each solve().
+  void assembleVariable(SolidFractions& solids, const std::vector<RigidBody>& bodies,
+                        const std::vector<double>& liquid_distance, double density, double reference, double dt);
+  // What the law makes of the velocities of a state.
+  void evaluateViscosity(const ViscosityLaw& law, const CoupledState& state, ViscosityField& field);
+  void setViscosity(const ViscosityField& field);
+  // After solve(), of its solution: how much the viscous forces change with that viscosity, relative to |b| as the residual.
+  double viscousChange(const CoupledState& solution, const ViscosityField& next);
 
   // free_velocity: u*, gravity included. free_twists: v* of free bodies, the prescribed twist of the others. laws: one
   // per contact. Gravity (m/s^2) is what acts on the liquid that sticks to bodies.

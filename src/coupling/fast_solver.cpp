@@ -185,7 +185,7 @@ void FastSolver::prepare(StepProblem& problem) {
   std::vector<StaggeredCoefficients<float>> levels = std::move(problem.coarse);
   problem.coarse = m.preconditioner.takeLevels();
   levels[0] = convertCoefficients<float>(problem.coefficients);
-  m.preconditioner.set(std::move(levels), problem.viscous_number, &problem.regions);
+  m.preconditioner.set(std::move(levels), problem.viscous_number, &problem.cell_viscosity, &problem.regions);
 }
 
 CoupledReport FastSolver::solve(const StepVector& rhs, const CoupledOptions& options, StepVector& x) {

@@ -1,5 +1,7 @@
 #include "coupling/liquid_preconditioner.h"
 
+#include <algorithm>
+
 namespace monolith {
 namespace {
 
@@ -17,12 +19,15 @@ float removeMean(const std::vector<std::ptrdiff_t>& cells, std::vector<float>& f
 }  // namespace
 
 void LiquidPreconditioner::set(std::vector<StaggeredCoefficients<float>>&& levels, double viscous_number,
+                               const std::vector<float>* cell_viscosity,
                                const std::vector<PressureRegion>* regions) {
   levels_ = std::move(levels);
   viscous_number_ = static_cast<float>(viscous_number);
+  cell_viscosity_ = cell_viscosity;
   regions_ = regions;
   std::size_t velocity_levels = 1;
   double number = viscous_number;
+  if (!cell_viscosity->empty()) number *= *std::max_element(cell_viscosity->begin(), cell_viscosity->end());
   while (velocity_levels < levels_.size() && number > kLeastViscousNumber) {
     ++velocity_levels;
     number *= 0.25;
@@ -80,6 +85,11 @@ void LiquidPreconditioner::apply(const StepVector& r, StepVector& x) {
   clearHalo(l, phi_);
 #pragma omp parallel for simd schedule(static)
   for (std::size_t i = 0; i < l.size; ++i) x.pressure[i] = phi_[i] + 2.0f * viscous_number_ * g_[i];
+  if (cell_viscosity_->empty()) return;
+#pragma omp parallel for simd schedule(static)
+  for (std::size_t i = 0; i < l.size; ++i) {
+    x.pressure[i] = phi_[i] + 2.0f * viscous_number_ * (*cell_viscosity_)[i] * g_[i];
+  }
 }
 
 }  // namespace monolith

@@ -12,9 +12,10 @@ namespace monolith {
 
 class LiquidPreconditioner {
  public:
-  // levels[0] is the finest. `regions` must outlive the preconditioner.
+  // levels[0] is the finest. `regions` must outlive the preconditioner, and so must `cell_viscosity`, the factors of the
+  // viscous number in each cell; empty: one.
   void set(std::vector<StaggeredCoefficients<float>>&& levels, double viscous_number,
-           const std::vector<PressureRegion>* regions);
+           const std::vector<float>* cell_viscosity, const std::vector<PressureRegion>* regions);
   std::vector<StaggeredCoefficients<float>> takeLevels() { return std::move(levels_); }
 
   // x ~ the solution for right side r; the bodies' parts are neither read nor written.
@@ -23,6 +24,7 @@ class LiquidPreconditioner {
  private:
   std::vector<StaggeredCoefficients<float>> levels_;
   float viscous_number_ = 0.0f;
+  const std::vector<float>* cell_viscosity_ = nullptr;
   const std::vector<PressureRegion>* regions_ = nullptr;
   VelocityMultigrid velocity_;
   PressureMultigrid pressure_;

@@ -16,6 +16,28 @@ void StepVector::setZero() {
   for (auto& twist : bodies) twist.setZero();
 }
 
+void computeStress(const StaggeredCoefficients<double>& c, const BodyRows& rows, const StepVector& x,
+                   StressSamples<double>& stress) {
+  computeStress(c, x.velocity, stress);
+  for (int a = 0; a < 3; ++a) {
+    for (const BodyRow& row : rows.normal[a]) {
+      stress.normal[a][row.sample] += c.normal[a][row.sample] * row.coefficient.dot(x.bodies[row.body]);
+    }
+    for (const BodyRow& row : rows.shear[a]) {
+      stress.shear[a][row.sample] += row.coefficient.dot(x.bodies[row.body]);
+    }
+    fillHalo(c.lattice, stress.normal[a]);
+    fillHalo(c.lattice, stress.shear[a]);
+  }
+}
+
+void addStressToBodies(const BodyRows& rows, const StressSamples<double>& stress, std::vector<Vector6d>& forces) {
+  for (int a = 0; a < 3; ++a) {
+    for (const BodyRow& row : rows.normal[a]) forces[row.body] += row.coefficient * stress.normal[a][row.sample];
+    for (const BodyRow& row : rows.shear[a]) forces[row.body] += row.coefficient * stress.shear[a][row.sample];
+  }
+}
+
 void StepOperator::apply(StepVector& x, StepVector& y) {
   const StaggeredCoefficients<double>& c = *coefficients_;
   const Lattice& l = c.lattice;
@@ -24,19 +46,7 @@ void StepOperator::apply(StepVector& x, StepVector& y) {
   for (auto& field : x.velocity) fillHalo(l, field);
   fillHalo(l, x.pressure);
 
-  if (c.viscous) {
-    computeStress(c, x.velocity, stress_);
-    for (int a = 0; a < 3; ++a) {
-      for (const BodyRow& row : rows_->normal[a]) {
-        stress_.normal[a][row.sample] += c.normal[a][row.sample] * row.coefficient.dot(x.bodies[row.body]);
-      }
-      for (const BodyRow& row : rows_->shear[a]) {
-        stress_.shear[a][row.sample] += row.coefficient.dot(x.bodies[row.body]);
-      }
-      fillHalo(l, stress_.normal[a]);
-      fillHalo(l, stress_.shear[a]);
-    }
-  }
+  if (c.viscous) computeStress(c, *rows_, x, stress_);
   applyMomentum(c, x.velocity, stress_, y.velocity);
   addPressureForce(c, x.pressure, -1.0, y.velocity);
   computeDivergence(c, x.velocity, y.pressure);
@@ -47,9 +57,8 @@ void StepOperator::apply(StepVector& x, StepVector& y) {
 #pragma omp parallel for simd schedule(static)
   for (std::size_t i = 0; i < y.pressure.size(); ++i) y.pressure[i] = -y.pressure[i];
   if (!c.viscous) return;
+  addStressToBodies(*rows_, stress_, y.bodies);
   for (int a = 0; a < 3; ++a) {
-    for (const BodyRow& row : rows_->normal[a]) y.bodies[row.body] += row.coefficient * stress_.normal[a][row.sample];
-    for (const BodyRow& row : rows_->shear[a]) y.bodies[row.body] += row.coefficient * stress_.shear[a][row.sample];
     for (const BodyRow& row : rows_->drag[a]) {
       const double solid = row.coefficient.dot(x.bodies[row.body]);
       const double drag = c.drag[a][row.sample];

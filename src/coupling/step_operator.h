@@ -17,6 +17,12 @@ struct StepVector {
   void setZero();
 };
 
+// Stress samples of liquid and bodies; x's halo must be filled, that of the stress is filled on return.
+void computeStress(const StaggeredCoefficients<double>& coefficients, const BodyRows& rows, const StepVector& x,
+                       StressSamples<double>& stress);
+// Adds what the stress does to each body.
+void addStressToBodies(const BodyRows& rows, const StressSamples<double>& stress, std::vector<Vector6d>& forces);
+
 class StepOperator {
  public:
   // Both must outlive the operator.
@@ -28,7 +34,6 @@ class StepOperator {
   // y = [A_uu U + A_uv v - C_u^T p,  A_vu U + (A_vv - M) v - C_v^T p,  -(C_u U + C_v v)]; without the bodies' inertia.
   // Fills the halos of x on periodic axes.
   void apply(StepVector& x, StepVector& y);
-
 
   // The bodies' part of apply() for twists of zero, at the cost of the bodies' rows alone: what the liquid's velocity and
   // pressure do to each body.

@@ -19,7 +19,8 @@ constexpr double kFluxTolerance = 1e-7;
 }  // namespace
 
 void StepProblem::assemble(SolidFractions& solids, const std::vector<RigidBody>& all_bodies,
-                           const std::vector<double>& liquid_distance, double density, double viscosity, double step) {
+                           const std::vector<double>& liquid_distance, double density, double viscosity, double step,
+                           bool rates) {
   bodies = &all_bodies;
   dt = step;
   viscous_number = viscosity * dt / (density * grid.h * grid.h);
@@ -27,9 +28,10 @@ void StepProblem::assemble(SolidFractions& solids, const std::vector<RigidBody>&
   pressure_scale = density * grid.h / dt;
 
   sticking.clear();
+  cell_viscosity.clear();
   if (coarse.empty()) coarse.resize(1);
   if (discretisation == Discretisation::kFitted) {
-    assembleFitted(solids, liquid_distance);
+    assembleFitted(solids, liquid_distance, rates);
   } else {
     assembleFractions(solids, liquid_distance);
   }
@@ -69,7 +71,7 @@ void StepProblem::assemble(SolidFractions& solids, const std::vector<RigidBody>&
   regions = findPressureRegions(coefficients, rows, moves);
 }
 
-void StepProblem::assembleFitted(SolidFractions& solids, const std::vector<double>& liquid_distance) {
+void StepProblem::assembleFitted(SolidFractions& solids, const std::vector<double>& liquid_distance, bool rates) {
   if (viscous_number >= kStickingNumber) {
     attachStickingLiquid(grid, solids, sticking);
     for (StickingLiquid& s : sticking) {
@@ -77,7 +79,7 @@ void StepProblem::assembleFitted(SolidFractions& solids, const std::vector<doubl
     }
   }
   const StokesGeometry geometry{&solids.fluid, &solids.distance, &liquid_distance};
-  buildCoefficients(grid.lattice, geometry, viscous_number, coefficients);
+  buildCoefficients(grid.lattice, geometry, viscous_number, coefficients, rates ? &strain : nullptr);
   buildBodyRows(grid, solids, *bodies, geometry, coefficients, rows);
   buildCoarseLevels(grid.lattice, geometry, viscous_number, coarse);
 }

@@ -29,9 +29,10 @@ class StepProblem {
       : grid(grid), discretisation(discretisation) {}
 
   // Geometry and material; liquid_distance in cell widths with its halo filled. Bodies must outlive the problem; in `solids` the
-  // liquid that sticks to the bodies is moved to them.
+  // liquid that sticks to the bodies is moved to them. With `rates`, `strain` is filled, too.
   void assemble(SolidFractions& solids, const std::vector<RigidBody>& all_bodies,
-                const std::vector<double>& liquid_distance, double density, double viscosity, double step);
+                const std::vector<double>& liquid_distance, double density, double viscosity, double step,
+                bool rates = false);
 
   // The right side with r = 0. free_velocity: u*, gravity included. free_twists: v* of free bodies, the prescribed twist
   // of the others. gravity acts on the liquid that sticks to bodies. Returns what is wrong, if there is no
@@ -62,7 +63,9 @@ class StepProblem {
   std::vector<PressureRegion> regions;
   std::vector<StaggeredCoefficients<float>> coarse;  // multigrid levels; [0] is left empty
   const std::vector<RigidBody>* bodies = nullptr;
-  double viscous_number = 0.0;
+  double viscous_number = 0.0;               // of the reference viscosity where viscosity varies
+  std::vector<float> cell_viscosity;         // relative to it, per cell; empty: constant
+  StrainScales strain;
   double impulse_scale = 1.0;                // rho h^3: dimensionless impulse -> N s
   double pressure_scale = 1.0;               // rho h/dt: p^ -> Pa
   double dt = 1.0;
@@ -75,7 +78,7 @@ class StepProblem {
   std::vector<EnclosedWeight> enclosed;         // in contacts, which liquid reaches from their rim
 
  private:
-  void assembleFitted(SolidFractions& solids, const std::vector<double>& liquid_distance);
+  void assembleFitted(SolidFractions& solids, const std::vector<double>& liquid_distance, bool rates);
   void assembleFractions(SolidFractions& solids, const std::vector<double>& liquid_distance);
   double stickingVelocity(const StickingLiquid& s, const Vector6d& row, const Eigen::Vector3d& gravity) const;
   // Dimensionless impulse on a body by the weight of the liquid between a contact and its rim.

@@ -113,7 +113,7 @@ double liquidPart(double distance_low, double distance_high) {
 }
 
 void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double viscous_number,
-                       StaggeredCoefficients<double>& out) {
+                       StaggeredCoefficients<double>& out, StrainScales* strain) {
   out.resize(l, viscous_number > 0.0);
   const auto& liquid = *geometry.liquid_distance;
   const int width = l.faceEnd(0);
@@ -144,6 +144,11 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
   });
   if (!out.viscous) return;
 
+  if (strain != nullptr) {
+    for (auto* fields : {&strain->normal, &strain->shear, &strain->drag}) {
+      for (auto& field : *fields) field.assign(l.size, 0.0);
+    }
+  }
   const SampleBuilder samples(l, geometry, out);
   forEachRow(l, [&](std::ptrdiff_t row, int, int) {
     for (auto c = row; c < row + width; ++c) {
@@ -152,10 +157,12 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
         if (s.defined && !s.both_solid) {
           // eta |D_aa|^2: D^T D gives 2 N per unit weight; weight theta over theta^2.
           out.normal[a][c] = 2.0 * viscous_number * samples.liquidOfCell(c) / s.theta;
+          if (strain != nullptr && out.normal[a][c] > 0.0) strain->normal[a][c] = 1.0 / s.theta;
         }
         if (samples.kind(a, c) == FaceKind::kSliver) {
           // The film between the face's open part and the surface is about half the open part thick.
           out.drag[a][c] = 4.0 * viscous_number / std::max(out.open[a][c], kLeastSliver);
+          if (strain != nullptr) strain->drag[a][c] = 2.0 / std::max(out.open[a][c], kLeastSliver);
         }
       }
       for (int p = 0; p < 3; ++p) {
@@ -170,6 +177,7 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
         const double weight = std::sqrt(viscous_number * samples.liquidOfEdge(c, a, b) * share);
         out.shear[p][0][c] = weight / s.theta;
         out.shear[p][1][c] = weight / t.theta;
+        if (strain != nullptr && weight > 0.0) strain->shear[p][c] = 1.0 / weight;
       }
     }
   });
@@ -177,6 +185,11 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
     fillHalo(l, out.normal[a]);
     fillHalo(l, out.drag[a]);
     for (int s = 0; s < 2; ++s) fillHalo(l, out.shear[a][s]);
+    if (strain != nullptr) {
+      fillHalo(l, strain->normal[a]);
+      fillHalo(l, strain->shear[a]);
+      fillHalo(l, strain->drag[a]);
+    }
   }
 }
 

@@ -37,9 +37,17 @@ struct StokesGeometry {
   const std::vector<double>* liquid_distance = nullptr;  // cell widths, negative in liquid, at cell centres, halo filled
 };
 
-// Coefficients of one level; `viscous_number` is that of the level.
+// From what the operator computes at a sample to its rate, in 1/s times the cell width, where the viscosity is the one that the
+// coefficients were built with; 0 where there is no sample.
+struct StrainScales {
+  FaceField<double> normal;  // (U_a[c + a] - U_a[c]) -> D_aa
+  FaceField<double> shear;   // t -> 2 D_ab
+  FaceField<double> drag;    // slip past the solid -> shear of the film
+};
+
+// Coefficients of one level; `viscous_number` is that of the level. `strain`, if wanted, is filled only with viscosity.
 void buildCoefficients(const Lattice& lattice, const StokesGeometry& geometry, double viscous_number,
-                       StaggeredCoefficients<double>& out);
+                       StaggeredCoefficients<double>& out, StrainScales* strain = nullptr);
 
 // Rows of the bodies on the finest level, for coefficients built from the same geometry.
 void buildBodyRows(const MacGrid& grid, const SolidFractions& solids, const std::vector<RigidBody>& bodies,

@@ -90,6 +90,7 @@ monolith_tank::Statistics toStatistics(const StepReport& report, double real_tim
   message.iterations = static_cast<std::uint32_t>(report.iterations);
   message.liquid_solves = static_cast<std::uint32_t>(report.liquid_solves);
   message.friction_iterations = static_cast<std::uint32_t>(report.friction_iterations);
+  message.rheology_iterations = static_cast<std::uint32_t>(report.rheology_iterations);
   message.residual = report.residual;
   message.divergence = report.divergence;
   message.maximum_speed = report.maximum_speed;
@@ -100,6 +101,7 @@ monolith_tank::Statistics toStatistics(const StepReport& report, double real_tim
   message.penetration = report.penetration;
   message.liquid = report.model.liquid;
   message.viscosity = report.model.viscosity;
+  message.non_newtonian = report.model.non_newtonian;
   message.free_surface = report.model.free_surface;
   message.coupled_bodies = static_cast<std::uint32_t>(report.model.coupled_bodies);
   message.contacts = static_cast<std::uint32_t>(report.model.contacts);

@@ -25,9 +25,27 @@ struct TankDescription {
   bool periodic[3] = {false, false, false};           // walls along an axis are replaced by periodicity
 };
 
+// How viscosity depends on the shear rate; laws and sources in fluid/rheology.h. Only the parameters of the law count.
+struct RheologyDescription {
+  enum class Law { kNewtonian, kPowerLaw, kCarreauYasuda, kHerschelBulkley };
+  Law law = Law::kNewtonian;                          // of LiquidDescription::dynamic_viscosity
+  double consistency = 0.0;                           // Pa s^n
+  double index = 1.0;                                 // n
+  double yield_stress = 0.0;                          // Pa
+  double regularisation = 0.0;                        // s
+  double zero_shear_viscosity = 0.0;                  // Pa s
+  double infinite_shear_viscosity = 0.0;              // Pa s
+  double time_constant = 0.0;                         // s
+  double transition = 2.0;                            // a
+  double minimum_viscosity = 0.0;                     // Pa s; 0: as the law has it
+  double maximum_viscosity = 0.0;                     // Pa s; 0: as the law has it
+  int maximum_iterations = 100;                       // of the viscosity in one sub-step
+};
+
 struct LiquidDescription {
   double density = 1000.0;                            // kg/m^3
   double dynamic_viscosity = 0.0;                     // Pa.s; 0 is an inviscid liquid
+  RheologyDescription rheology;
   double fill_level = 0.0;                            // m above the floor; 0: none, size.z(): full, closed
   std::vector<Eigen::AlignedBox3d> boxes;             // further liquid at the start, in W
 };

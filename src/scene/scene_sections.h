@@ -18,6 +18,7 @@ void readLiquid(const YAML::Node& node, const TankDescription& tank, bool tank_u
 void readContact(const YAML::Node& node, const std::vector<BodyDescription>& bodies, ContactDescription& contact,
                  Violations& violations);
 
+void readRheology(const YAML::Node& node, RheologyDescription& rheology, Violations& violations);
 void readSolver(const YAML::Node& node, SolverDescription& solver, Violations& violations);
 
 // Entry `index` of the list of bodies; `folder` is that of the scene file.

@@ -72,9 +72,13 @@ bool readTank(const YAML::Node& node, TankDescription& tank, Violations& violati
 
 void readLiquid(const YAML::Node& node, const TankDescription& tank, bool tank_usable, LiquidDescription& liquid,
                 Violations& violations) {
-  const YamlMap map(node, "liquid", {"density", "dynamic_viscosity", "fill_level", "boxes"}, violations);
+  const YamlMap map(node, "liquid", {"density", "dynamic_viscosity", "rheology", "fill_level", "boxes"}, violations);
   map.read("density", liquid.density, Range::kPositive);
   map.read("dynamic_viscosity", liquid.dynamic_viscosity, Range::kNotNegative);
+  if (map.has("rheology")) readRheology(map.get("rheology"), liquid.rheology, violations);
+  if (liquid.rheology.law != RheologyDescription::Law::kNewtonian && map.has("dynamic_viscosity")) {
+    map.fail("dynamic_viscosity", "none, viscosity is that of liquid.rheology");
+  }
   map.read("fill_level", liquid.fill_level, Range::kNotNegative);
   const double tolerance = kCellTolerance * tank.cell_width;
   if (tank_usable && liquid.fill_level > tank.size.z() + tolerance) {

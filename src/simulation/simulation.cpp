@@ -13,6 +13,7 @@
 #include "rigid/overlap.h"
 #include "simulation/contact_laws.h"
 #include "simulation/liquid_state.h"
+#include "simulation/non_newtonian.h"
 
 namespace monolith {
 namespace {
@@ -42,6 +43,7 @@ struct State {
   CoupledState coupled;
   std::array<std::vector<std::uint8_t>, 3> known;
   bool started = false;
+  double typical_viscosity = 0.0;    // Pa s, of a non-Newtonian liquid
 };
 
 }  // namespace
@@ -49,7 +51,8 @@ struct State {
 struct Simulation::Impl {
   explicit Impl(const Scene& s)
       : scene(s), grid(makeGrid(s.tank, s.liquid)), walls(makeWalls(s.tank)), sampler(grid),
-        system(grid, s.solver.name, s.solver.coupling, s.solver.discretisation), laws(s) {}
+        system(grid, s.solver.name, s.solver.coupling, s.solver.discretisation), laws(s),
+        viscosity_law(makeViscosityLaw(s.liquid)) {}
 
   static TankWalls makeWalls(const TankDescription& tank) {
     TankWalls walls;
@@ -60,7 +63,8 @@ struct Simulation::Impl {
 
   void initialise();
   bool hasLiquid() const { return !state.surface[0].empty(); }
-  bool noSlip() const { return scene.liquid.dynamic_viscosity > 0.0; }
+  bool nonNewtonian() const { return hasLiquid() && !viscosity_law.constant(); }
+  bool noSlip() const { return viscosity_law.most() > 0.0; }
   double bodySpeed() const;
   bool substep(double dt, StepReport& report);
   CoupledReport solveWithLiquid(double dt, const std::vector<Vector6d>& free_twists,
@@ -76,6 +80,7 @@ struct Simulation::Impl {
   SolidFractions step_solids;   // as the last solve used them
   CoupledSystem system;
   ContactLaws laws;
+  ViscosityLaw viscosity_law;
   std::unique_ptr<ContactDetector> detector;
   std::vector<Wrench> wrenches;
   double target_volume = 0.0;   // m^3
@@ -107,6 +112,7 @@ void Simulation::Impl::initialise() {
   state.coupled.contact.assign(state.bodies.size(), Wrench());
   prepareGeometry();
   target_volume = state.surface[0].volume(solids.cell_fluid);
+  state.typical_viscosity = viscosity_law.viscosity(0.0);
 }
 
 void Simulation::Impl::prepareGeometry() {
@@ -138,15 +144,30 @@ CoupledReport Simulation::Impl::solveWithLiquid(double dt, const std::vector<Vec
   {
     const StageClock clock(step.times.geometry);
     step_solids = solids;
-    system.assemble(step_solids, state.bodies, state.surface[0].distance(), liquid.density, liquid.dynamic_viscosity,
-                    dt);
+    if (nonNewtonian()) {
+      system.assembleVariable(step_solids, state.bodies, state.surface[0].distance(), liquid.density,
+                              state.typical_viscosity, dt);
+    } else {
+      system.assemble(step_solids, state.bodies, state.surface[0].distance(), liquid.density, liquid.dynamic_viscosity,
+                      dt);
+    }
   }
   const StageClock clock(step.times.solve);
   CoupledOptions options;
   options.tolerance = scene.solver.tolerance * (state.started ? 1.0 : kFirstTolerance);
   options.maximum_iterations = scene.solver.maximum_iterations;
   for (std::size_t b = 0; b < state.bodies.size(); ++b) state.coupled.twists[b] = state.bodies[b].twist;
-  return system.solve(free_velocity, free_twists, contacts, laws.of(contacts), scene.gravity, options, state.coupled);
+  const auto solve = [&](const CoupledOptions& with) {
+    return system.solve(free_velocity, free_twists, contacts, laws.of(contacts), scene.gravity, with, state.coupled);
+  };
+  if (!nonNewtonian()) return solve(options);
+  RheologyReport rheology;
+  const CoupledReport solved =
+      solveNonNewtonian(system, viscosity_law, state.typical_viscosity, liquid.rheology.maximum_iterations,
+                        scene.solver.tolerance, options, solve, state.coupled, rheology);
+  step.rheology_iterations += rheology.iterations;
+  state.typical_viscosity = rheology.typical_viscosity;
+  return solved;
 }
 
 bool Simulation::Impl::substep(double dt, StepReport& step) {
@@ -184,6 +205,7 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
   sticking_momentum = system.stickingMomentum(state.coupled.twists);
   step.model.liquid = hasLiquid();
   step.model.viscosity = hasLiquid() && noSlip();
+  step.model.non_newtonian = nonNewtonian();
   step.model.free_surface = hasLiquid() && !state.surface[0].full();
   step.model.coupled_bodies = system.coupledBodies();
   step.model.contacts = static_cast<int>(contacts.size());
@@ -331,6 +353,11 @@ void Simulation::setBodyState(int body, const Eigen::Isometry3d& X_WB, const Eig
 
 std::vector<SurfacePoint> Simulation::surfacePoints() const {
   return sampleSurface(impl_->grid, impl_->state.surface[0], impl_->solids.cell_distance, impl_->state.coupled.velocity);
+}
+
+Eigen::Vector3d Simulation::liquidVelocity(const Eigen::Vector3d& point) const {
+  const MacGrid& grid = impl_->grid;
+  return velocityAt(grid.lattice, impl_->state.coupled.velocity, (point - grid.origin) / grid.h);
 }
 
 void Simulation::reset() { impl_->initialise(); }

@@ -58,6 +58,9 @@ class Simulation {
   // Points of the free surface, about one for each cell that it crosses; empty without a free surface.
   std::vector<SurfacePoint> surfacePoints() const;
 
+  // Velocity of the liquid, m/s, at a point in W; beyond the liquid what it is continued by.
+  Eigen::Vector3d liquidVelocity(const Eigen::Vector3d& point) const;
+
   // Back to the scene's initial state, time 0, no wrenches.
   void reset();
 

@@ -23,6 +23,7 @@ struct StageTimes {        // s of wall time, summed over the sub-steps
 struct ModelChoice {       // what the last sub-step modelled, chosen from the state
   bool liquid = false;
   bool viscosity = false;
+  bool non_newtonian = false;
   bool free_surface = false;
   int coupled_bodies = 0;  // bodies with at least one coupling row
   int contacts = 0;
@@ -38,6 +39,7 @@ struct StepReport {
   int iterations = 0;              // Krylov, summed over the sub-steps
   int liquid_solves = 0;           // coupled linear solves, summed over the sub-steps
   int friction_iterations = 0;     // staggered projections, summed over the sub-steps
+  int rheology_iterations = 0;     // of the viscosity, summed over the sub-steps; Newtonian: none
   double residual = 0.0;           // relative, worst of the sub-steps
   double divergence = 0.0;         // 1/s, largest in a liquid cell
   double maximum_speed = 0.0;      // m/s, in the liquid

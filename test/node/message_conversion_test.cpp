@@ -71,6 +71,8 @@ TEST(MessageConversion, StatisticsCarryEveryStage) {
   report.model.contacts = 3;
   report.model.friction = true;
   report.friction_iterations = 6;
+  report.rheology_iterations = 9;
+  report.model.non_newtonian = true;
   const monolith_tank::Statistics message = toStatistics(report, 0.5);
   EXPECT_FALSE(message.committed);
   EXPECT_EQ(message.status, "inconsistent");
@@ -80,6 +82,8 @@ TEST(MessageConversion, StatisticsCarryEveryStage) {
   EXPECT_EQ(message.contacts, 3u);
   EXPECT_TRUE(message.friction);
   EXPECT_EQ(message.friction_iterations, 6u);
+  EXPECT_EQ(message.rheology_iterations, 9u);
+  EXPECT_TRUE(message.non_newtonian);
   EXPECT_EQ(message.real_time_factor, 0.5);
 }
 
