@@ -1,6 +1,6 @@
 #pragma once
-// One step: assemble it (coupling/step_problem.h), solve it by the solver and the coupling that the scene names, and hand
-// back velocities, pressure, twists and the forces on the bodies.
+// One step: assemble it (coupling/step_problem.h), solve it by the solver and the coupling that the scene names, and
+// hand back velocities, pressure, twists and the forces on the bodies.
 
 #include <memory>
 #include <vector>
@@ -13,10 +13,10 @@ namespace monolith {
 
 // In: initial guess. Out: solution, if the report says so; otherwise untouched.
 struct CoupledState {
-  FaceField<double> velocity;        // m/s, zero where there is no unknown
-  std::vector<double> pressure;      // Pa
-  std::vector<Vector6d> twists;      // of all bodies
-  std::vector<Wrench> liquid;        // mean over the step, on each body
+  FaceField<double> velocity;    // m/s, zero where it is not resolved
+  std::vector<double> pressure;  // Pa
+  std::vector<Vector6d> twists;  // of all bodies
+  std::vector<Wrench> liquid;    // mean over the step, on each body
   std::vector<Wrench> contact;
   std::vector<ContactImpulse> impulses;
 };
@@ -37,15 +37,15 @@ class CoupledSystem {
   // What the law makes of the velocities of a state.
   void evaluateViscosity(const ViscosityLaw& law, const CoupledState& state, ViscosityField& field);
   void setViscosity(const ViscosityField& field);
-  // After solve(), of its solution: how much the viscous forces change with that viscosity, relative to |b| as the residual.
+  // After solve(), of its solution: how much the viscous forces change with that viscosity, relative to |b| as the
+  // residual.
   double viscousChange(const CoupledState& solution, const ViscosityField& next);
 
   // free_velocity: u*, gravity included. free_twists: v* of free bodies, the prescribed twist of the others. laws: one
   // per contact. Gravity (m/s^2) is what acts on the liquid that sticks to bodies.
   [[nodiscard]] CoupledReport solve(const FaceField<double>& free_velocity, const std::vector<Vector6d>& free_twists,
                                     const std::vector<Contact>& contacts, const std::vector<ContactLaw>& laws,
-                                    const Eigen::Vector3d& gravity, const CoupledOptions& options,
-                                    CoupledState& state);
+                                    const Eigen::Vector3d& gravity, const CoupledOptions& options, CoupledState& state);
 
   const StepProblem& problem() const;
   const StaggeredCoefficients<double>& coefficients() const { return problem().coefficients; }

@@ -9,8 +9,8 @@ namespace {
 
 using Cell = std::array<int, 3>;
 
-// Less of a face than this is closed.
-constexpr double kLeastFluid = 0.05;
+// Less of a face than this is closed: no tiny pivots. The finest level has no such faces (solid_fractions.h).
+constexpr double kLeastFluid = 1e-3;
 // Less liquid than this in a face is none: no tiny pivots.
 constexpr double kLeastLiquid = 1e-3;
 
@@ -61,7 +61,8 @@ class RowBuilder {
     if (a_high == a_low && b_high == b_low && rotation == 0.0) return;
     Eigen::Vector3d x = grid_.faceCenter(a, at[0], at[1], at[2]);
     x[b] -= 0.5 * grid_.h;
-    Vector6d row = (a_high - a_low) * velocityRow(a, x, body_.p_WBcm) + (b_high - b_low) * velocityRow(b, x, body_.p_WBcm);
+    Vector6d row =
+        (a_high - a_low) * velocityRow(a, x, body_.p_WBcm) + (b_high - b_low) * velocityRow(b, x, body_.p_WBcm);
     row.tail<3>() += rotation * Eigen::Vector3d::Unit(b).cross(Eigen::Vector3d::Unit(a));
     out.push_back({e, index_, coefficients_.shear[pair][0][e] * row});
   }
@@ -100,33 +101,9 @@ void addStressRows(const MacGrid& grid, const BodyFractions& fractions, const Ri
 
 }  // namespace
 
-void closeSlivers(const MacGrid& grid, SolidFractions& solids) {
-  const Lattice& l = grid.lattice;
-  for (int a = 0; a < 3; ++a) {
-    auto& fluid = solids.fluid[a];
-    const auto isSliver = [&](double open) { return open > 0.0 && open < kLeastFluid; };
-    std::array<bool, 3> beyond = {false, false, false};
-    beyond[a] = true;
-    for (BodyFractions& f : solids.bodies) {
-      for (int k = 0; k < f.count[2]; ++k) {
-        for (int j = 0; j < f.count[1]; ++j) {
-          for (int i = 0; i < f.count[0]; ++i) {
-            double& part = f.face[a][f.local(i, j, k)];
-            if (part == 0.0) continue;
-            const double open = fluid[gridIndex(l, {f.low[0] + i, f.low[1] + j, f.low[2] + k}, beyond)];
-            if (isSliver(open)) part /= 1.0 - open;
-          }
-        }
-      }
-    }
-    for (double& open : fluid) {
-      if (isSliver(open)) open = 0.0;
-    }
-  }
-}
-
-FractionGeometry sampleFractions(const MacGrid& grid, const std::vector<RigidBody>& bodies, const SolidFractions& solids,
-                                 const std::vector<double>& liquid_distance, bool viscous) {
+FractionGeometry sampleFractions(const MacGrid& grid, const std::vector<RigidBody>& bodies,
+                                 const SolidFractions& solids, const std::vector<double>& liquid_distance,
+                                 bool viscous) {
   FractionGeometry geometry;
   geometry.fluid = solids.fluid;
   std::vector<StressFractions> parts;

@@ -12,9 +12,12 @@ namespace {
 // From this viscous number on a time step resolves the film between a body and the nearest faces: no slip there.
 // Below, the liquid next to the body is free to slip and viscosity only drags it along.
 constexpr double kStickingNumber = 0.05;
-// Flux that a sealed region cannot take up, relative to the fluxes through its boundary: above, the motions are at fault,
-// below, round-off.
+// Flux that a sealed region cannot take up, relative to the fluxes through its boundary: above, the motions are at
+// fault, below, round-off.
 constexpr double kFluxTolerance = 1e-7;
+
+// `fractions`: less of a face than this does not tell the velocity of the liquid there (fraction_coefficients.h).
+constexpr double kLeastResolved = 0.25;
 
 }  // namespace
 
@@ -84,17 +87,23 @@ void StepProblem::assembleFitted(SolidFractions& solids, const std::vector<doubl
   buildCoarseLevels(grid.lattice, geometry, viscous_number, coarse);
 }
 
-void StepProblem::assembleFractions(SolidFractions& solids, const std::vector<double>& liquid_distance) {
-  closeSlivers(grid, solids);
+void StepProblem::assembleFractions(const SolidFractions& solids, const std::vector<double>& liquid_distance) {
   const FractionGeometry geometry = sampleFractions(grid, *bodies, solids, liquid_distance, viscous_number > 0.0);
   buildFractionCoefficients(grid.lattice, geometry, viscous_number, coefficients);
   buildFractionRows(grid, solids, *bodies, coefficients, rows);
   buildCoarseFractionLevels(grid.lattice, geometry, liquid_distance, viscous_number, coarse);
   flux_share = geometry.fluid;
+  const Lattice& l = grid.lattice;
+  std::vector<std::uint8_t> has_pressure = coefficients.has_pressure;
+  fillHalo(l, has_pressure);
   for (int a = 0; a < 3; ++a) {
-    for (std::size_t f = 0; f < flux_share[a].size(); ++f) {
-      if (!(coefficients.mass[a][f] > 0.0)) flux_share[a][f] = 0.0;
-    }
+    resolved_[a].assign(l.size, 0);
+    forEachRow(l, [&](std::ptrdiff_t row, int, int) {
+      for (auto f = row; f < row + l.faceEnd(0); ++f) {
+        if (!(coefficients.mass[a][f] > 0.0)) flux_share[a][f] = 0.0;
+        resolved_[a][f] = flux_share[a][f] >= kLeastResolved && (has_pressure[f] || has_pressure[f - l.stride[a]]);
+      }
+    });
   }
 }
 
@@ -107,9 +116,13 @@ void StepProblem::toUnknowns(FaceField<double>& velocity) const {
 void StepProblem::toVelocities(FaceField<double>& unknowns) const {
   for (int a = 0; a < 3; ++a) {
     for (std::size_t f = 0; f < flux_share[a].size(); ++f) {
-      if (flux_share[a][f] > 0.0) unknowns[a][f] /= flux_share[a][f];
+      unknowns[a][f] = isResolved(a, f) ? unknowns[a][f] / flux_share[a][f] : 0.0;
     }
   }
+}
+
+bool StepProblem::isResolved(int axis, std::ptrdiff_t face) const {
+  return resolved_[axis].empty() ? coefficients.mass[axis][face] > 0.0 : resolved_[axis][face] != 0;
 }
 
 FaceField<double> StepProblem::liquidMass() const {
@@ -121,7 +134,8 @@ FaceField<double> StepProblem::liquidMass() const {
 }
 
 // It has moved with its body: its momentum is not that of the face, which is slower.
-double StepProblem::stickingVelocity(const StickingLiquid& s, const Vector6d& row, const Eigen::Vector3d& gravity) const {
+double StepProblem::stickingVelocity(const StickingLiquid& s, const Vector6d& row,
+                                     const Eigen::Vector3d& gravity) const {
   return row.dot((*bodies)[s.body].twist) + dt * gravity[s.axis];
 }
 
@@ -184,8 +198,9 @@ std::string StepProblem::balanceSealedRegions(std::vector<double>& flux) const {
     if (std::abs(sum) > kFluxTolerance * size && size > 1e-12) {
       std::ostringstream text;
       text << "a sealed region of liquid (" << region.cells.size() << " cells, "
-           << static_cast<double>(region.cells.size()) * grid.cellVolume() << " m^3) would have to change its volume by "
-           << sum * grid.h * grid.h << " m^3/s under the prescribed motion of";
+           << static_cast<double>(region.cells.size()) * grid.cellVolume()
+           << " m^3) would have to change its volume by " << sum * grid.h * grid.h
+           << " m^3/s under the prescribed motion of";
       std::vector<char> named(bodies->size(), 0);
       std::vector<char> inside(grid.lattice.size, 0);
       for (const auto c : region.cells) inside[c] = 1;

@@ -28,14 +28,14 @@ class StepProblem {
   explicit StepProblem(const MacGrid& grid, Discretisation discretisation = Discretisation::kFitted)
       : grid(grid), discretisation(discretisation) {}
 
-  // Geometry and material; liquid_distance in cell widths with its halo filled. Bodies must outlive the problem; in `solids` the
-  // liquid that sticks to the bodies is moved to them. With `rates`, `strain` is filled, too.
+  // Geometry and material; liquid_distance in cell widths with its halo filled. Bodies must outlive the problem; in
+  // `solids` the liquid that sticks to the bodies is moved to them. With `rates`, `strain` is filled, too.
   void assemble(SolidFractions& solids, const std::vector<RigidBody>& all_bodies,
                 const std::vector<double>& liquid_distance, double density, double viscosity, double step,
                 bool rates = false);
 
-  // The right side with r = 0. free_velocity: u*, gravity included. free_twists: v* of free bodies, the prescribed twist
-  // of the others. gravity acts on the liquid that sticks to bodies. Returns what is wrong, if there is no
+  // The right side with r = 0. free_velocity: u*, gravity included. free_twists: v* of free bodies, the prescribed
+  // twist of the others. gravity acts on the liquid that sticks to bodies. Returns what is wrong, if there is no
   // solution: a sealed region whose volume the prescribed motions would change.
   [[nodiscard]] std::string rightSide(const FaceField<double>& free_velocity, const std::vector<Vector6d>& free_twists,
                                       const Eigen::Vector3d& gravity, StepVector& rhs) const;
@@ -50,6 +50,9 @@ class StepProblem {
   // Velocity of the liquid (m/s) <-> the unknown U of the face, in place.
   void toUnknowns(FaceField<double>& velocity) const;
   void toVelocities(FaceField<double>& unknowns) const;
+  // Whether U of a face tells how fast the liquid there is: such velocities are advected and move the surface; other
+  // faces take theirs from around (see fraction_coefficients.h; `fitted`: every face with an unknown).
+  bool isResolved(int axis, std::ptrdiff_t face) const;
   // Liquid in a face's control volume: (rho h^3) liquidMass() u is its momentum.
   FaceField<double> liquidMass() const;
 
@@ -59,32 +62,33 @@ class StepProblem {
   Discretisation discretisation;
   StaggeredCoefficients<double> coefficients;
   BodyRows rows;
-  FaceField<double> flux_share;                 // U = flux_share u, 0 without an unknown; empty: U = u
+  FaceField<double> flux_share;  // U = flux_share u, 0 without an unknown; empty: U = u
   std::vector<PressureRegion> regions;
   std::vector<StaggeredCoefficients<float>> coarse;  // multigrid levels; [0] is left empty
   const std::vector<RigidBody>* bodies = nullptr;
-  double viscous_number = 0.0;               // of the reference viscosity where viscosity varies
-  std::vector<float> cell_viscosity;         // relative to it, per cell; empty: constant
+  double viscous_number = 0.0;        // of the reference viscosity where viscosity varies
+  std::vector<float> cell_viscosity;  // relative to it, per cell; empty: constant
   StrainScales strain;
-  double impulse_scale = 1.0;                // rho h^3: dimensionless impulse -> N s
-  double pressure_scale = 1.0;               // rho h/dt: p^ -> Pa
+  double impulse_scale = 1.0;   // rho h^3: dimensionless impulse -> N s
+  double pressure_scale = 1.0;  // rho h/dt: p^ -> Pa
   double dt = 1.0;
-  std::vector<int> free;                     // bodies whose twist is unknown
-  std::vector<int> free_index;               // body -> place in `free`, or -1
-  std::vector<Vector6d> twist_scale;         // of free bodies: sqrt of the inertia that they feel, liquid included
-  std::vector<Matrix6d> inertia;             // M^ of free bodies with the liquid that sticks to them
-  std::vector<Matrix6d> solid_inertia;       // M^ of free bodies by themselves
-  std::vector<StickingLiquid> sticking;      // fraction is that of liquid: times W_L
-  std::vector<EnclosedWeight> enclosed;         // in contacts, which liquid reaches from their rim
+  std::vector<int> free;                 // bodies whose twist is unknown
+  std::vector<int> free_index;           // body -> place in `free`, or -1
+  std::vector<Vector6d> twist_scale;     // of free bodies: sqrt of the inertia that they feel, liquid included
+  std::vector<Matrix6d> inertia;         // M^ of free bodies with the liquid that sticks to them
+  std::vector<Matrix6d> solid_inertia;   // M^ of free bodies by themselves
+  std::vector<StickingLiquid> sticking;  // fraction is that of liquid: times W_L
+  std::vector<EnclosedWeight> enclosed;  // in contacts, which liquid reaches from their rim
 
  private:
   void assembleFitted(SolidFractions& solids, const std::vector<double>& liquid_distance, bool rates);
-  void assembleFractions(SolidFractions& solids, const std::vector<double>& liquid_distance);
+  void assembleFractions(const SolidFractions& solids, const std::vector<double>& liquid_distance);
   double stickingVelocity(const StickingLiquid& s, const Vector6d& row, const Eigen::Vector3d& gravity) const;
   // Dimensionless impulse on a body by the weight of the liquid between a contact and its rim.
   Vector6d enclosedImpulse(const EnclosedWeight& weight, const Eigen::Vector3d& gravity) const;
   std::string balanceSealedRegions(std::vector<double>& flux) const;
 
+  std::array<std::vector<std::uint8_t>, 3> resolved_;  // empty: every face with an unknown
   mutable StepOperator op_;
 };
 

@@ -18,16 +18,16 @@ MacGrid makeGrid(const TankDescription& tank, const LiquidDescription& liquid) {
   return grid;
 }
 
-void completeVelocity(const MacGrid& grid, const StaggeredCoefficients<double>& coefficients,
-                      const SolidFractions& solids, const std::vector<RigidBody>& bodies, int layers, bool no_slip,
-                      FaceField<double>& velocity, std::array<std::vector<std::uint8_t>, 3>& known) {
+void completeVelocity(const MacGrid& grid, const StepProblem& problem, const SolidFractions& solids,
+                      const std::vector<RigidBody>& bodies, int layers, bool no_slip, FaceField<double>& velocity,
+                      std::array<std::vector<std::uint8_t>, 3>& known) {
   const Lattice& l = grid.lattice;
   for (int a = 0; a < 3; ++a) {
     known[a].assign(l.size, 0);
     forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
       for (int i = 0; i < l.faceEnd(0); ++i) {
         const auto f = row + i;
-        if (coefficients.mass[a][f] > 0.0) {
+        if (problem.isResolved(a, f)) {
           known[a][f] = 1;
           continue;
         }
@@ -74,9 +74,9 @@ std::vector<double> hydrostaticPressure(const MacGrid& grid, const FreeSurface& 
   return pressure;
 }
 
-LiquidBudget liquidBudget(const MacGrid& grid, const FaceField<double>& liquid_mass,
-                          const FaceField<double>& velocity, const FreeSurface& surface,
-                          const std::vector<double>& cell_fluid, double density, const Eigen::Vector3d& gravity) {
+LiquidBudget liquidBudget(const MacGrid& grid, const FaceField<double>& liquid_mass, const FaceField<double>& velocity,
+                          const FreeSurface& surface, const std::vector<double>& cell_fluid, double density,
+                          const Eigen::Vector3d& gravity) {
   const Lattice& l = grid.lattice;
   LiquidBudget budget;
   for (int k = 0; k < l.faceEnd(2); ++k) {

@@ -15,9 +15,9 @@ MacGrid makeGrid(const TankDescription& tank, const LiquidDescription& liquid);
 
 // Marks the faces whose velocity is known, gives faces inside bodies the bodies' velocity where it sticks to them, and
 // spreads the rest into solids and air.
-void completeVelocity(const MacGrid& grid, const StaggeredCoefficients<double>& coefficients,
-                      const SolidFractions& solids, const std::vector<RigidBody>& bodies, int layers, bool no_slip,
-                      FaceField<double>& velocity, std::array<std::vector<std::uint8_t>, 3>& known);
+void completeVelocity(const MacGrid& grid, const StepProblem& problem, const SolidFractions& solids,
+                      const std::vector<RigidBody>& bodies, int layers, bool no_slip, FaceField<double>& velocity,
+                      std::array<std::vector<std::uint8_t>, 3>& known);
 
 // Pressure of the liquid at rest: where it is exact the first solve has nothing to do.
 std::vector<double> hydrostaticPressure(const MacGrid& grid, const FreeSurface& surface, double density,
@@ -25,13 +25,13 @@ std::vector<double> hydrostaticPressure(const MacGrid& grid, const FreeSurface& 
 
 // liquid_mass: liquid part of each face's control volume.
 struct LiquidBudget {
-  double kinetic = 0.0;    // J
-  double potential = 0.0;  // J, zero at the world's origin
+  double kinetic = 0.0;                                // J
+  double potential = 0.0;                              // J, zero at the world's origin
   Eigen::Vector3d momentum = Eigen::Vector3d::Zero();  // kg m/s, in W
 };
-LiquidBudget liquidBudget(const MacGrid& grid, const FaceField<double>& liquid_mass,
-                          const FaceField<double>& velocity, const FreeSurface& surface,
-                          const std::vector<double>& cell_fluid, double density, const Eigen::Vector3d& gravity);
+LiquidBudget liquidBudget(const MacGrid& grid, const FaceField<double>& liquid_mass, const FaceField<double>& velocity,
+                          const FreeSurface& surface, const std::vector<double>& cell_fluid, double density,
+                          const Eigen::Vector3d& gravity);
 
 std::vector<SurfacePoint> sampleSurface(const MacGrid& grid, const FreeSurface& surface,
                                         const std::vector<double>& cell_distance, const FaceField<double>& velocity);

@@ -18,7 +18,7 @@
 namespace monolith {
 namespace {
 
-constexpr double kMeshResolution = 0.5;    // of a cell: spacing of the distance grid of meshes
+constexpr double kMeshResolution = 0.5;     // of a cell: spacing of the distance grid of meshes
 constexpr double kOverlapTolerance = 0.05;  // of a cell, at the start
 constexpr int kLargestSubsteps = 64;
 // The first solve starts from nothing that it could correct later.
@@ -43,15 +43,19 @@ struct State {
   CoupledState coupled;
   std::array<std::vector<std::uint8_t>, 3> known;
   bool started = false;
-  double typical_viscosity = 0.0;    // Pa s, of a non-Newtonian liquid
+  double typical_viscosity = 0.0;  // Pa s, of a non-Newtonian liquid
 };
 
 }  // namespace
 
 struct Simulation::Impl {
   explicit Impl(const Scene& s)
-      : scene(s), grid(makeGrid(s.tank, s.liquid)), walls(makeWalls(s.tank)), sampler(grid),
-        system(grid, s.solver.name, s.solver.coupling, s.solver.discretisation), laws(s),
+      : scene(s),
+        grid(makeGrid(s.tank, s.liquid)),
+        walls(makeWalls(s.tank)),
+        sampler(grid),
+        system(grid, s.solver.name, s.solver.coupling, s.solver.discretisation),
+        laws(s),
         viscosity_law(makeViscosityLaw(s.liquid)) {}
 
   static TankWalls makeWalls(const TankDescription& tank) {
@@ -76,14 +80,14 @@ struct Simulation::Impl {
   MacGrid grid;
   TankWalls walls;
   SolidSampler sampler;
-  SolidFractions solids;        // at the bodies' present poses, sticking liquid not yet attached
-  SolidFractions step_solids;   // as the last solve used them
+  SolidFractions solids;       // at the bodies' present poses, sticking liquid not yet attached
+  SolidFractions step_solids;  // as the last solve used them
   CoupledSystem system;
   ContactLaws laws;
   ViscosityLaw viscosity_law;
   std::unique_ptr<ContactDetector> detector;
   std::vector<Wrench> wrenches;
-  double target_volume = 0.0;   // m^3
+  double target_volume = 0.0;  // m^3
   // Of the liquid that stuck to the bodies in the last solve, at their poses then.
   double sticking_energy = 0.0;  // J
   Eigen::Vector3d sticking_momentum = Eigen::Vector3d::Zero();
@@ -101,7 +105,8 @@ void Simulation::Impl::initialise() {
     state.bodies.push_back(makeRigidBody(body, kMeshResolution * grid.h));
   }
   const std::string overlaps = describeOverlaps(state.bodies, walls, kOverlapTolerance * grid.h);
-  if (!overlaps.empty()) throw SceneError(scene.source + ": bodies overlap at the start, expected them apart:\n" + overlaps);
+  if (!overlaps.empty())
+    throw SceneError(scene.source + ": bodies overlap at the start, expected them apart:\n" + overlaps);
   detector = std::make_unique<ContactDetector>(state.bodies, walls);
   wrenches.assign(state.bodies.size(), Wrench());
   state.surface.emplace_back(grid, scene.liquid.fill_level, scene.liquid.boxes);
@@ -174,7 +179,7 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
   std::vector<Vector6d> free_twists;
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
     const RigidBody& body = state.bodies[b];
-    free_twists.push_back(body.motion == BodyMotion::kFree ? freeTwist(body, scene.gravity, wrenches[b], dt)
+    free_twists.push_back(body.motion == BodyMotion::kFree         ? freeTwist(body, scene.gravity, wrenches[b], dt)
                           : body.motion == BodyMotion::kPrescribed ? prescribedTwist(body, state.time + 0.5 * dt)
                                                                    : Vector6d(Vector6d::Zero()));
   }
@@ -195,8 +200,8 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
   step.residual = std::max(step.residual, solved.residual);
   step.divergence = std::max(step.divergence, solved.divergence);
   if (solved.status != CoupledReport::Status::kConverged) {
-    step.status = solved.status == CoupledReport::Status::kInconsistent ? SolveStatus::kInconsistent
-                                                                        : SolveStatus::kNotConverged;
+    step.status =
+        solved.status == CoupledReport::Status::kInconsistent ? SolveStatus::kInconsistent : SolveStatus::kNotConverged;
     step.message = solved.message;
     return false;
   }
@@ -230,7 +235,7 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
     const int most = *std::max_element(grid.lattice.n.begin(), grid.lattice.n.end());
     const double reach = std::ceil(std::max(step.maximum_speed, bodySpeed()) * dt / grid.h);
     const int layers = static_cast<int>(std::min(reach, static_cast<double>(most))) + 3;
-    completeVelocity(grid, system.coefficients(), step_solids, state.bodies, layers, noSlip(), state.coupled.velocity,
+    completeVelocity(grid, system.problem(), step_solids, state.bodies, layers, noSlip(), state.coupled.velocity,
                      state.known);
     state.surface[0].advect(state.coupled.velocity, dt, step.maximum_speed);
     prepareGeometry();
@@ -243,8 +248,8 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
 void Simulation::Impl::measure(StepReport& step) const {
   if (hasLiquid()) {
     step.liquid_volume = state.surface[0].volume(solids.cell_fluid);
-    const LiquidBudget budget = liquidBudget(grid, system.problem().liquidMass(), state.coupled.velocity, state.surface[0],
-                                             solids.cell_fluid, scene.liquid.density, scene.gravity);
+    const LiquidBudget budget = liquidBudget(grid, system.problem().liquidMass(), state.coupled.velocity,
+                                             state.surface[0], solids.cell_fluid, scene.liquid.density, scene.gravity);
     step.kinetic_energy = budget.kinetic + sticking_energy;
     step.potential_energy = budget.potential;
     step.liquid_momentum = budget.momentum + sticking_momentum;
@@ -252,7 +257,8 @@ void Simulation::Impl::measure(StepReport& step) const {
   for (const RigidBody& body : state.bodies) {
     if (body.motion != BodyMotion::kFree) continue;
     const Eigen::Vector3d spin = body.twist.tail<3>();
-    step.kinetic_energy += 0.5 * body.mass * body.twist.head<3>().squaredNorm() + 0.5 * spin.dot(body.worldInertia() * spin);
+    step.kinetic_energy +=
+        0.5 * body.mass * body.twist.head<3>().squaredNorm() + 0.5 * spin.dot(body.worldInertia() * spin);
     step.potential_energy -= body.mass * scene.gravity.dot(body.p_WBcm);
   }
 }
@@ -344,15 +350,16 @@ void Simulation::setBodyState(int body, const Eigen::Isometry3d& X_WB, const Eig
   moved.twist.tail<3>() = angular_velocity;
   const std::string overlaps = describeOverlaps(bodies, m.walls, kOverlapTolerance * m.grid.h);
   if (!overlaps.empty()) {
-    throw std::invalid_argument("state of '" + name + "': expected a pose inside the tank and clear of other bodies:\n" +
-                                overlaps);
+    throw std::invalid_argument("state of '" + name +
+                                "': expected a pose inside the tank and clear of other bodies:\n" + overlaps);
   }
   m.state.bodies = bodies;
   m.prepareGeometry();
 }
 
 std::vector<SurfacePoint> Simulation::surfacePoints() const {
-  return sampleSurface(impl_->grid, impl_->state.surface[0], impl_->solids.cell_distance, impl_->state.coupled.velocity);
+  return sampleSurface(impl_->grid, impl_->state.surface[0], impl_->solids.cell_distance,
+                       impl_->state.coupled.velocity);
 }
 
 Eigen::Vector3d Simulation::liquidVelocity(const Eigen::Vector3d& point) const {

@@ -1,5 +1,5 @@
-// The discretisation `fractions`: its fractions sum to one, its rows are those of an explicitly formed Q, its operator is
-// symmetric and positive semi-definite, and a step with it keeps the balance of momentum.
+// The discretisation `fractions`: its fractions sum to one, its rows are those of an explicitly formed Q, its operator
+// is symmetric and positive semi-definite, and a step with it keeps the balance of momentum.
 
 #include "coupling/fraction_coefficients.h"
 
@@ -8,7 +8,8 @@
 #include <map>
 #include <random>
 
-#include "coupling/step_problem.h"
+#include "coupling/direct_solver.h"
+#include "coupling/fast_solver.h"
 #include "rigid/integration.h"
 
 namespace monolith {
@@ -37,8 +38,8 @@ Shape shapeOf(Shape::Kind kind, const Eigen::Vector3d& box_size, double radius, 
   return shape;
 }
 
-// A turned box that a sphere touches, a turned cylinder that overlaps the sphere, and a box through a wall or, where the
-// tank is periodic, through its end; liquid with a tilted surface, or full.
+// A turned box that a sphere touches, a turned cylinder that overlaps the sphere, and a box through a wall or, where
+// the tank is periodic, through its end; liquid with a tilted surface, or full.
 struct FractionScene {
   MacGrid grid;
   std::vector<RigidBody> bodies;
@@ -104,7 +105,8 @@ template <class Function>
 void forEachInBox(const BodyFractions& box, Function&& f) {
   for (int k = 0; k < box.count[2]; ++k) {
     for (int j = 0; j < box.count[1]; ++j) {
-      for (int i = 0; i < box.count[0]; ++i) f(box.local(i, j, k), Cell{box.low[0] + i, box.low[1] + j, box.low[2] + k});
+      for (int i = 0; i < box.count[0]; ++i)
+        f(box.local(i, j, k), Cell{box.low[0] + i, box.low[1] + j, box.low[2] + k});
     }
   }
 }
@@ -134,7 +136,7 @@ TEST(Fractions, OfEveryFaceSumToOne) {
             const double wall = !l.periodic[a] && at[a] == 0 ? 1.0 : 0.0;
             EXPECT_NEAR(sum[f] + wall, 1.0, 4e-16 * 8);
             // Nothing between closed and the least part that has an unknown.
-            EXPECT_TRUE(open == 0.0 || open >= 0.05) << open;
+            EXPECT_TRUE(open == 0.0 || open >= 1e-3) << open;
             EXPECT_EQ(scene.problem.coefficients.mass[a][f] > 0.0, open > 0.0);
             cut += open > 0.0 && open < 1.0;
           }
@@ -305,7 +307,8 @@ ExplicitRows explicitRows(const FractionScene& scene) {
 
 Row gathered(const std::vector<BodyRow>& rows) {
   Row out;
-  for (const BodyRow& row : rows) out.try_emplace({row.sample, row.body}, Vector6d::Zero()).first->second += row.coefficient;
+  for (const BodyRow& row : rows)
+    out.try_emplace({row.sample, row.body}, Vector6d::Zero()).first->second += row.coefficient;
   return out;
 }
 
@@ -394,9 +397,9 @@ TEST(FractionRows, OfAWideBodyAreThoseOfItsSurface) {
   }
   std::printf("box 20 cells wide: J_p has %zu rows of the %zu that Q W_S G touches, J_p and J_s together %zu of %zu\n",
               pressure, touched_by_pressure, stored, touched);
-  EXPECT_LT(pressure, touched_by_pressure / 2);
+  EXPECT_LT(pressure, 6u * touched_by_pressure / 10u);
   EXPECT_LT(stored, touched / 2);
-  EXPECT_GT(pressure, 1000u);  // the surface itself: about 6 x 20 x 20
+  EXPECT_GT(pressure, 6u * 19u * 19u);  // at least one layer on the surface
 }
 
 // -- the operator
@@ -450,8 +453,20 @@ TEST(FractionOperator, IsSymmetricAndPositiveSemiDefinite) {
           EXPECT_NEAR(product(scene, y, Ax), product(scene, x, Ay), 1e-12 * scale);
           StepVector u = randomVector(scene, 90 + seed, false), Au;
           op.apply(u, Au);
-          EXPECT_GT(product(scene, u, Au), 0.0);
-          // The velocity part alone is a sum of squares also for the smallest modes: no mass, only the stresses.
+          const double total = product(scene, u, Au);
+          double inertia = 0.0;
+          const auto& mass = scene.problem.coefficients.mass;
+          for (int a = 0; a < 3; ++a) {
+            clearHalo(scene.grid.lattice, u.velocity[a]);
+            for (std::size_t f = 0; f < mass[a].size(); ++f)
+              inertia += mass[a][f] * u.velocity[a][f] * u.velocity[a][f];
+          }
+          EXPECT_GT(inertia, 0.0);
+          if (viscosity > 0.0) {
+            EXPECT_GT(total, inertia);
+          } else {
+            EXPECT_NEAR(total, inertia, 1e-12 * inertia);
+          }
         }
       }
     }
@@ -493,20 +508,102 @@ TEST(FractionOperator, TranslationOfAllCostsNothing) {
   op.set(&scene.problem.coefficients, &scene.problem.rows);
   op.apply(x, Ax);
   const FaceField<double> liquid = scene.problem.liquidMass();
+  const Lattice& l = scene.grid.lattice;
   int faces = 0;
   for (int a = 0; a < 3; ++a) {
-    for (std::size_t f = 0; f < liquid[a].size(); ++f) {
-      if (!(c.mass[a][f] > 0.0)) continue;
-      // What is left is inertia, that of the liquid in the face.
-      const double share = scene.problem.flux_share[a][f];
-      EXPECT_NEAR(Ax.velocity[a][f] * share, liquid[a][f] * velocity[a], 1e-11);
-      EXPECT_NEAR(liquid[a][f], share, 1e-12);
-      ++faces;
+    for (int k = 0; k < l.n[2]; ++k) {
+      for (int j = 0; j < l.n[1]; ++j) {
+        for (int i = 0; i < l.n[0]; ++i) {
+          const auto f = l.index(i, j, k);
+          if (!(c.mass[a][f] > 0.0)) continue;
+          // What is left is inertia, that of the liquid in the face.
+          const double share = scene.problem.flux_share[a][f];
+          EXPECT_NEAR(Ax.velocity[a][f] * share, liquid[a][f] * velocity[a], 1e-11);
+          EXPECT_NEAR(liquid[a][f], share, 1e-12);
+          ++faces;
+        }
+      }
     }
   }
   for (const double d : Ax.pressure) EXPECT_NEAR(d, 0.0, 1e-12);
   for (const Vector6d& force : Ax.bodies) EXPECT_LT(force.norm(), 1e-10);
   EXPECT_GT(faces, 1000);
+}
+
+// -- a step
+
+TEST(FractionStep, SolversAgreeAndMomentumBalances) {
+  for (const double viscosity : {0.0, 2.0}) {
+    FractionScene scene(kPeriodic, viscosity, kFull);
+    StepProblem& p = scene.problem;
+    const Lattice& l = scene.grid.lattice;
+    std::mt19937 random(7);
+    std::normal_distribution<double> gauss;
+    FaceField<double> free_velocity;
+    for (int a = 0; a < 3; ++a) {
+      free_velocity[a].assign(l.size, 0.0);
+      for (int k = 0; k < l.n[2]; ++k) {
+        for (int j = 0; j < l.n[1]; ++j) {
+          for (int i = 0; i < l.n[0]; ++i) free_velocity[a][l.index(i, j, k)] = gauss(random);
+        }
+      }
+    }
+    std::vector<Vector6d> twists(scene.bodies.size());
+    for (auto& twist : twists) twist = Vector6d::NullaryExpr([&] { return gauss(random); });
+    StepVector rhs;
+    ASSERT_EQ(p.rightSide(free_velocity, twists, Eigen::Vector3d::Zero(), rhs), "");
+    CoupledOptions options;
+    options.tolerance = 1e-10;
+    StepVector x, y;
+    for (auto* v : {&x, &y}) v->resize(l, scene.bodies.size());
+    DirectSolver direct;
+    direct.prepare(p);
+    const CoupledReport exact = direct.solve(rhs, options, x);
+    ASSERT_EQ(exact.status, CoupledReport::Status::kConverged) << exact.message;
+    FastSolver fast;
+    fast.prepare(p);
+    const CoupledReport report = fast.solve(rhs, options, y);
+    ASSERT_EQ(report.status, CoupledReport::Status::kConverged) << report.message;
+    double difference = 0.0, size = 0.0;
+    for (int a = 0; a < 3; ++a) {
+      for (std::size_t f = 0; f < l.size; ++f) {
+        difference = std::max(difference, std::abs(x.velocity[a][f] - y.velocity[a][f]));
+        size = std::max(size, std::abs(x.velocity[a][f]));
+      }
+    }
+    EXPECT_LT(difference, 1e-6 * size);
+
+    // Nothing but liquid and bodies here, so their momentum is what it was, and kinetic energy does not grow.
+    const FaceField<double> liquid = p.liquidMass();
+    FaceField<double> velocity = x.velocity;
+    Eigen::Vector3d before = Eigen::Vector3d::Zero(), after = before;
+    double energy_before = 0.0, energy_after = 0.0;
+    for (int a = 0; a < 3; ++a) {
+      for (int k = 0; k < l.n[2]; ++k) {
+        for (int j = 0; j < l.n[1]; ++j) {
+          for (int i = 0; i < l.n[0]; ++i) {
+            const auto f = l.index(i, j, k);
+            if (!(liquid[a][f] > 0.0)) continue;
+            const double u = x.velocity[a][f] / p.flux_share[a][f];
+            before[a] += liquid[a][f] * free_velocity[a][f];
+            after[a] += liquid[a][f] * u;
+            energy_before += 0.5 * liquid[a][f] * free_velocity[a][f] * free_velocity[a][f];
+            energy_after += 0.5 * liquid[a][f] * u * u;
+          }
+        }
+      }
+    }
+    for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+      const Matrix6d& M = p.inertia[p.free_index[b]];
+      before += (M * twists[b]).head<3>();
+      after += (M * x.bodies[b]).head<3>();
+      energy_before += 0.5 * twists[b].dot(M * twists[b]);
+      energy_after += 0.5 * x.bodies[b].dot(M * x.bodies[b]);
+    }
+    EXPECT_LT((after - before).norm(), 1e-7 * std::sqrt(2.0 * energy_before));
+    EXPECT_LT(energy_after, energy_before);
+    EXPECT_GT(energy_after, 0.0);
+  }
 }
 
 }  // namespace

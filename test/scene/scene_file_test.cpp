@@ -62,6 +62,7 @@ TEST_F(SceneFile, DefaultsAreThoseOfTheDescriptions) {
   EXPECT_EQ(scene.liquid.density, LiquidDescription().density);
   EXPECT_EQ(scene.liquid.fill_level, 0.0);
   EXPECT_EQ(scene.solver.tolerance, SolverDescription().tolerance);
+  EXPECT_EQ(scene.solver.discretisation, Discretisation::kFitted);
   EXPECT_TRUE(scene.bodies.empty());
   EXPECT_LT((scene.tank.origin - Vector3d(-0.5, -0.4, 0.0)).norm(), 1e-15);  // centred, floor at 0
 }
@@ -77,7 +78,7 @@ liquid:
   boxes: [{min: [1.0, 2.0, 3.0], max: [2.0, 3.0, 3.5]}]
 gravity: [1.0, 0.0, -2.0]
 time_step: 0.05
-solver: {tolerance: 1e-8, maximum_iterations: 7, threads: 2, cfl: 0.5}
+solver: {discretisation: fractions, tolerance: 1e-8, maximum_iterations: 7, threads: 2, cfl: 0.5}
 bodies:
   - name: free_one
     urdf: ball.urdf
@@ -104,6 +105,7 @@ bodies:
   EXPECT_EQ(scene.liquid.boxes[0].max(), Vector3d(2, 3, 3.5));
   EXPECT_EQ(scene.gravity, Vector3d(1, 0, -2));
   EXPECT_EQ(scene.time_step, 0.05);
+  EXPECT_EQ(scene.solver.discretisation, Discretisation::kFractions);
   EXPECT_EQ(scene.solver.tolerance, 1e-8);
   EXPECT_EQ(scene.solver.maximum_iterations, 7);
   EXPECT_EQ(scene.solver.threads, 2);
@@ -158,8 +160,7 @@ TEST_F(SceneFile, EachViolationNamesLineKeyValueAndExpectation) {
       {tank("  size: [1, 1, 0.3]\n  cell_width: 0.1\n"), {"at least 4 cells", "along z", "not 3"}},
       {tank("  size: [100, 100, 100]\n  cell_width: 0.001\n"), {"1e+15 cells need about 6e+08 GB, this machine has"}},
       {tank("  size: [1, 1, 1]\n  cell_width: 0.1\n  periodic: true\n"), {"tank.periodic: value true"}},
-      {tank("  size: [1, 1, 1]\n  cell_with: 0.1\n"),
-       {"scene.yaml:3: tank.cell_with: unknown key", "\"cell_width\""}},
+      {tank("  size: [1, 1, 1]\n  cell_with: 0.1\n"), {"scene.yaml:3: tank.cell_with: unknown key", "\"cell_width\""}},
       {kTank + "liqid: {}\n", {"scene.yaml:2: liqid: unknown key", "\"liquid\""}},
       {kTank + kTank, {"scene.yaml:2: tank: given twice"}},
       {liquid("density: 0"), {"scene.yaml:2: liquid.density: value 0"}},
@@ -173,6 +174,7 @@ TEST_F(SceneFile, EachViolationNamesLineKeyValueAndExpectation) {
       {kTank + "time_step: 0\n", {"scene.yaml:2: time_step: value 0"}},
       {kTank + "gravity: -9.81\n", {"gravity: value -9.81: expected a list of 3"}},
       {kTank + "name: []\n", {"name: value []"}},
+      {kTank + "solver: {discretisation: fitter}\n", {"solver.discretisation: value fitter", "fitted", "fractions"}},
       {kTank + "solver: {tolerance: 2}\n", {"solver.tolerance: value 2"}},
       {kTank + "solver: {tolerance: 0}\n", {"solver.tolerance: value 0"}},
       {kTank + "solver: {maximum_iterations: 0}\n", {"solver.maximum_iterations: value 0", ">= 1"}},
@@ -236,8 +238,10 @@ TEST_F(SceneFile, ResolverFindsPackagesAndParameters) {
   const Scene scene = load(kTank + R"(bodies:
   - {name: a, urdf: "package://shop/ball.urdf", position: [0, 0, 0.3]}
   - {name: b, urdf_parameter: /robot_description, position: [0, 0, 0.3]}
-  - {name: c, urdf: "file://)" + folder_.path() + R"(/ball.urdf", position: [0, 0, 0.3]}
-)", resolver);
+  - {name: c, urdf: "file://)" +
+                               folder_.path() + R"(/ball.urdf", position: [0, 0, 0.3]}
+)",
+                           resolver);
   ASSERT_EQ(scene.bodies.size(), 3u);
   for (const BodyDescription& body : scene.bodies) EXPECT_EQ(body.mass, 2.0);
   EXPECT_EQ(scene.bodies[0].source, folder_.path() + "/ball.urdf");
@@ -245,8 +249,9 @@ TEST_F(SceneFile, ResolverFindsPackagesAndParameters) {
 }
 
 TEST_F(SceneFile, SizesWithinRoundOffOfWholeCellsBecomeExact) {
-  const Scene scene = load("tank: {size: [0.50000001, 0.7, 0.6], cell_width: 0.1}\n"
-                           "liquid: {fill_level: 0.6}\n");
+  const Scene scene = load(
+      "tank: {size: [0.50000001, 0.7, 0.6], cell_width: 0.1}\n"
+      "liquid: {fill_level: 0.6}\n");
   EXPECT_EQ(scene.tank.size, Vector3d(5 * 0.1, 7 * 0.1, 6 * 0.1));
 }
 
