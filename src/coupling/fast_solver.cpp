@@ -13,20 +13,25 @@
 namespace monolith {
 namespace {
 
-// The bodies' resistance is estimated anew when the solve takes this many times the iterations that it took when fresh...
+// The bodies' resistance is estimated anew when the solve takes this many times the iterations that it took when
+// fresh...
 constexpr double kStaleIterations = 1.4;
 // ... or the viscous number has changed by this factor.
 constexpr double kStaleNumber = 1.5;
 // Coulomb's law on the small system is solved this much more closely than the whole, as far as digits allow.
 constexpr double kSmallFactor = 0.01;
 constexpr double kSmallTolerance = 1e-9;
-// Contacts have settled when what they do to the bodies' velocities changes by less than the solve's tolerance times this.
+// Contacts have settled when what they do to the bodies' velocities changes by less than the solve's tolerance times
+// this.
 constexpr double kLawFactor = 10.0;
 constexpr double kLeastSpeed = 1e-10;  // m/s
+// Rounds after which the response of the bodies in contact is no longer estimated but solved for, and how closely.
+constexpr int kRoundsOnEstimate = 10;
+constexpr double kResponseTolerance = 1e-6;
 constexpr double kLeastCurvature = 1e-8;
 
-// Symmetric rank-one update of the response K so that it gives the change of twists dv that impulses dg were seen to make; left
-// alone where that would cost its definiteness.
+// Symmetric rank-one update of the response K so that it gives the change of twists dv that impulses dg were seen to
+// make; left alone where that would cost its definiteness.
 void learnResponse(const Eigen::VectorXd& dg, const Eigen::VectorXd& dv, Eigen::MatrixXd& K) {
   const Eigen::VectorXd miss = dv - K * dg;
   const double curvature = miss.dot(dg);
@@ -48,11 +53,11 @@ struct FastSolver::Impl {
   int fresh_iterations = 0;
   bool stale = true;
   StepVector in, out;
-  Eigen::VectorXd scale;  // Krylov unknown = scale * twist
-  Eigen::MatrixXd S;      // inertia plus resistance, in Krylov units
-  ContactBorder border;   // in Krylov units
-  Eigen::VectorXd compliance;         // of each contact row
-  Eigen::VectorXd border_compliance;  // of those in the border
+  Eigen::VectorXd scale;                       // Krylov unknown = scale * twist
+  Eigen::MatrixXd S;                           // inertia plus resistance, in Krylov units
+  ContactBorder border;                        // in Krylov units
+  Eigen::VectorXd compliance;                  // of each contact row
+  Eigen::VectorXd border_compliance;           // of those in the border
   Eigen::PartialPivLU<Eigen::MatrixXd> small;  // S bordered by the contacts
 
   const Lattice& lattice() const { return problem->grid.lattice; }
@@ -159,6 +164,23 @@ struct FastSolver::Impl {
     return done;
   }
 
+  // Response of the twists of the bodies in contact to unit impulses, by one liquid solve each; false if one fails.
+  bool solveResponse(const ContactRows& contacts, const CoupledOptions& options, CoupledReport& report,
+                     Eigen::MatrixXd& K) {
+    setBorder(makeBorder(contacts, {std::vector<ContactState>(contacts.count(), ContactState::kOpen), {}}));
+    const std::size_t liquid = liquidSize();
+    for (Eigen::Index i = 0; i < bodySize(); ++i) {
+      if (contacts.J.col(i).isZero(0.0)) continue;
+      std::vector<double> rhs(liquid + bodySize(), 0.0), x(rhs);
+      rhs[liquid + i] = 1.0 / scale[i];
+      const double goal = std::max(options.tolerance, kResponseTolerance) / scale[i];
+      if (!linearSolve(rhs, x, goal, options, report).converged) return false;
+      K.col(i) = Eigen::Map<const Eigen::VectorXd>(x.data() + liquid, bodySize()).cwiseQuotient(scale);
+    }
+    K = 0.5 * (K + K.transpose()).eval();
+    return true;
+  }
+
   // The estimate of the resistance is old if it takes clearly more iterations than when it was made.
   void judgeAge(const CoupledReport& report) {
     if (report.solves == 0 || bodySize() == 0) return;
@@ -232,8 +254,7 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
     m.precondition(residual, z);
     for (std::size_t i = 0; i < tail; ++i) z[i] += x[i];
     if (r.size() != 3 * count) r = Eigen::VectorXd::Zero(3 * count);
-    const FrictionReport friction =
-        solveFrictionalContact(D, velocities(z), contacts.friction, small_tolerance, r);
+    const FrictionReport friction = solveFrictionalContact(D, velocities(z), contacts.friction, small_tolerance, r);
     report.friction_iterations += friction.iterations;
     states = contactStates(contacts, r);
   }
@@ -243,6 +264,11 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
   const std::vector<double> guess(x);
   KrylovReport last;
   for (int round = 0; round < options.maximum_rounds && !lawful; ++round) {
+    if (round == kRoundsOnEstimate) {
+      if (!m.solveResponse(contacts, options, report, K)) break;
+      last_push.resize(0);
+      D = contactResponse(contacts, K, m.compliance);
+    }
     const ContactBorder border = makeBorder(contacts, states);
     m.setBorder(border);
     const Eigen::VectorXd start = borderUnknowns(border, r);
@@ -289,7 +315,8 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
         solveFrictionalContact(D, w - D * r + m.compliance.cwiseProduct(r), contacts.friction, small_tolerance, next);
     report.friction_iterations += friction.iterations;
     const double change = (D * (next - r)).cwiseAbs().maxCoeff();
-    lawful = friction.solved && change <= kLawFactor * options.tolerance * (D * next).cwiseAbs().maxCoeff() + kLeastSpeed;
+    lawful =
+        friction.solved && change <= kLawFactor * options.tolerance * (D * next).cwiseAbs().maxCoeff() + kLeastSpeed;
     r = next;
     states = contactStates(contacts, next);
   }

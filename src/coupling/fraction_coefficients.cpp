@@ -113,7 +113,7 @@ FractionGeometry sampleFractions(const MacGrid& grid, const std::vector<RigidBod
 }
 
 void buildFractionCoefficients(const Lattice& l, const FractionGeometry& g, double viscous_number,
-                               StaggeredCoefficients<double>& out) {
+                               StaggeredCoefficients<double>& out, StrainScales* strain) {
   out.resize(l, viscous_number > 0.0);
   const int width = l.faceEnd(0);
   forEachRow(l, [&](std::ptrdiff_t row, int, int) {
@@ -148,6 +148,7 @@ void buildFractionCoefficients(const Lattice& l, const FractionGeometry& g, doub
   });
   if (!out.viscous) return;
 
+  if (strain != nullptr) strain->resize(l);
   forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
     for (int i = 0; i < width; ++i) {
       const auto c = row + i;
@@ -155,6 +156,7 @@ void buildFractionCoefficients(const Lattice& l, const FractionGeometry& g, doub
         for (int a = 0; a < 3; ++a) {
           if (isAir(a, c) || isAir(a, c + l.stride[a])) continue;
           out.normal[a][c] = 2.0 * viscous_number * g.liquid.cell[c] * g.stress.cell[c];
+          if (strain != nullptr && out.normal[a][c] > 0.0) strain->normal[a][c] = 1.0;
         }
       }
       for (int p = 0; p < 3; ++p) {
@@ -163,6 +165,7 @@ void buildFractionCoefficients(const Lattice& l, const FractionGeometry& g, doub
         const double factor = std::sqrt(viscous_number * g.liquid.edge[p][c] * g.stress.edge[p][c]);
         out.shear[p][0][c] = factor;
         out.shear[p][1][c] = factor;
+        if (strain != nullptr && factor > 0.0) strain->shear[p][c] = 1.0 / factor;
       }
     }
   });
@@ -170,6 +173,7 @@ void buildFractionCoefficients(const Lattice& l, const FractionGeometry& g, doub
     fillHalo(l, out.normal[a]);
     for (int s = 0; s < 2; ++s) fillHalo(l, out.shear[a][s]);
   }
+  if (strain != nullptr) strain->fillHalos(l);
 }
 
 void buildFractionRows(const MacGrid& grid, const SolidFractions& solids, const std::vector<RigidBody>& bodies,

@@ -1,10 +1,9 @@
 #pragma once
-// The discretisation `fractions`, the paper's own (DESIGN 1.1, 1.2): every boundary by volume fractions, nothing
-// fitted.
+// The discretisation `fractions`, the paper's own (DESIGN 1.1, 1.2): all boundaries by volume fractions, none fitted.
 //
 // With the combined velocity of a face, uc = W_F u + sum_i W_Si Q_i^T v_i, a step minimises
-//   1/(2 dt) rho |u - u*|^2 weighted W_F^u W_L^u + eta |D uc|^2 weighted W_L^s W_F^s,  where G^T uc = 0 in cells with
-//   liquid.
+//   1/(2 dt) rho |u - u*|^2 weighted W_F^u W_L^u + eta |D uc|^2 weighted W_L^s W_F^s,
+// where G^T uc = 0 in cells with liquid.
 // The unknown of a face is U = W_F u, the flux-weighted velocity, in which D and G^T have no weights left:
 //   mass   W_L^u / W_F^u               open    1
 //   normal 2 N W_L^s W_F^s             shear   sqrt(N W_L^s W_F^s), both factors       (N as in stokes_coefficients.h)
@@ -22,18 +21,17 @@
 // Two kinds of faces have an unknown but no velocity worth the name; it is taken from the faces around or, in a body,
 // from that (StepProblem::isResolved):
 // - Hardly open ones. Less than 1e-3 is closed and given to the bodies. Of the rest the flux U is well determined,
-// U/W_F
-//   is not: W_F^s leaves the liquid of a sliver free to slip, and if advected it gathers speed (16 m/s in a liquid of
+//   U/W_F is not: W_F^s leaves the liquid of a sliver free to slip, and if advected it gathers speed (16 m/s in a liquid of
 //   30 Pa s that moves at 1). Closing more of them instead (W_F < 0.05, 0.1) costs buoyancy, +0.3 and +0.6 % of a
 //   sphere at D/h = 8 in place of +0.1 %, and leaves 6 m/s.
 // - Those between cells without pressure. Nothing accelerates them with the liquid below, and when the surface rises
-// they
-//   would mix what they were into it: without this rule the wave above loses three quarters of its amplitude.
+//   they would mix what they were into it: without this rule the wave above loses three quarters of its amplitude.
 
 #include <vector>
 
 #include "coupling/body_rows.h"
 #include "coupling/liquid_fractions.h"
+#include "coupling/stokes_coefficients.h"
 #include "coupling/stress_fractions.h"
 
 namespace monolith {
@@ -48,9 +46,9 @@ FractionGeometry sampleFractions(const MacGrid& grid, const std::vector<RigidBod
                                  const SolidFractions& solids, const std::vector<double>& liquid_distance,
                                  bool viscous);
 
-// Coefficients of one level; `viscous_number` is that of the level.
+// Coefficients of one level; `viscous_number` is that of the level. `strain`, if wanted, is filled only with viscosity.
 void buildFractionCoefficients(const Lattice& lattice, const FractionGeometry& geometry, double viscous_number,
-                               StaggeredCoefficients<double>& out);
+                               StaggeredCoefficients<double>& out, StrainScales* strain = nullptr);
 
 // Rows of the bodies on the finest level. What lies deep inside a body cancels and is not stored.
 void buildFractionRows(const MacGrid& grid, const SolidFractions& solids, const std::vector<RigidBody>& bodies,

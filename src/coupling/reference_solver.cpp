@@ -2,12 +2,14 @@
 
 #include <Eigen/IterativeLinearSolvers>
 #include <cmath>
+#include <functional>
 #include <sstream>
 
 #include "coupling/stress_system.h"
 #include "solve/disc_qp.h"
 #include "solve/lcp.h"
 #include "solve/mprgp.h"
+#include "solve/staggered_projections.h"
 
 namespace monolith {
 namespace {
@@ -17,13 +19,15 @@ constexpr int kMaximumTightenings = 8;
 constexpr double kTightening = 0.1;
 constexpr double kResponseTolerance = 1e-5;  // of the bodies' response, which steers the friction problem
 constexpr double kSmallTolerance = 1e-11;
-constexpr int kMaximumSweeps = 20000;         // of the friction problem on the bodies' response
-constexpr int kMaximumAlternations = 200;    // of staggered projections
-constexpr int kMaximumCorrections = 30;      // of the friction problem
-constexpr double kLawFactor = 10.0;  // staggered projections end when impulses change by less than this times the tolerance
+constexpr double kLawTolerance = 1e-9;    // of Coulomb's law on the bodies' response
+constexpr int kMaximumSweeps = 20000;     // of the friction problem on the bodies' response
+constexpr int kMaximumAlternations = 60;  // of staggered projections
+constexpr int kMaximumCorrections = 30;   // of the friction problem
+constexpr double kLawFactor =
+    10.0;  // staggered projections end when impulses change by less than this times the tolerance
 
-// Of all impulses lambda >= 0 that do the same to the bodies, those of least norm, as the other solvers choose them: how
-// redundant contacts share a load decides how much friction each can bear.
+// Of all impulses lambda >= 0 that do the same to the bodies, those of least norm, as the other solvers choose them:
+// how redundant contacts share a load decides how much friction each can bear.
 Eigen::VectorXd leastNorm(const ContactRows& contacts, const Eigen::MatrixXd& inverse_inertia,
                           const Eigen::VectorXd& lambda) {
   const Eigen::MatrixXd Jn = contacts.J.topRows(contacts.count());
@@ -49,10 +53,20 @@ struct ReferenceSolver::Impl {
   CoupledReport minimise(const StepVector& rhs, const Eigen::VectorXd& body_forces, const Eigen::MatrixXd& Jc,
                          const Eigen::VectorXd& bias, const CoupledOptions& options, Eigen::VectorXd& unknowns,
                          StepVector& x);
+  // Solves a problem of the contacts alone: velocities w at the impulses r on entry -> r.
+  using SmallProblem = std::function<bool(const Eigen::VectorXd& w, Eigen::VectorXd& r)>;
+  // Impulses r of Jacobian Jc by turns: the liquid for given r, then `small` on the bodies' response, until r stays.
+  CoupledReport settle(const StepVector& rhs, const Eigen::VectorXd& body_forces, const Eigen::MatrixXd& Jc,
+                       const Eigen::VectorXd& bias, const Eigen::VectorXd& compliance, const SmallProblem& small,
+                       const CoupledOptions& options, Eigen::VectorXd& unknowns, Eigen::VectorXd& r, StepVector& x);
+  // Normal impulses and friction at once, by Coulomb's law on the bodies' response.
+  CoupledReport minimiseLaw(const StepVector& rhs, const Eigen::VectorXd& body_forces, const ContactRows& contacts,
+                            const CoupledOptions& options, Eigen::VectorXd& unknowns, Eigen::VectorXd& r,
+                            StepVector& x);
   // The friction problem: (s, p, f) with the other forces on the bodies given.
   CoupledReport minimiseFriction(const StepVector& rhs, const Eigen::VectorXd& body_forces, const ContactRows& contacts,
-                                 const Eigen::VectorXd& radius, const CoupledOptions& options, Eigen::VectorXd& unknowns,
-                                 Eigen::VectorXd& f, StepVector& x);
+                                 const Eigen::VectorXd& radius, const CoupledOptions& options,
+                                 Eigen::VectorXd& unknowns, Eigen::VectorXd& f, StepVector& x);
   CoupledReport computeResponse();
   double residual(const StepVector& rhs, const Eigen::VectorXd& contact_forces, const StepVector& x) const;
 };
@@ -68,7 +82,8 @@ double ReferenceSolver::Impl::residual(const StepVector& rhs, const Eigen::Vecto
     for (std::size_t i = 0; i < r.velocity[a].size(); ++i) r.velocity[a][i] -= rhs.velocity[a][i];
   }
   for (std::size_t i = 0; i < r.pressure.size(); ++i) r.pressure[i] -= rhs.pressure[i];
-  scatterBodies(*problem, gatherBodies(*problem, r.bodies) - gatherBodies(*problem, rhs.bodies) - contact_forces, r.bodies);
+  scatterBodies(*problem, gatherBodies(*problem, r.bodies) - gatherBodies(*problem, rhs.bodies) - contact_forces,
+                r.bodies);
   const double scale = stepNorm(*problem, rhs);
   return scale > 0.0 ? stepNorm(*problem, r) / scale : 0.0;
 }
@@ -155,38 +170,59 @@ CoupledReport ReferenceSolver::Impl::computeResponse() {
   return report;
 }
 
-CoupledReport ReferenceSolver::Impl::minimiseFriction(const StepVector& rhs, const Eigen::VectorXd& body_forces,
-                                                      const ContactRows& contacts, const Eigen::VectorXd& radius,
-                                                      const CoupledOptions& options, Eigen::VectorXd& unknowns,
-                                                      Eigen::VectorXd& f, StepVector& x) {
-  CoupledReport report = computeResponse();
-  if (report.status != CoupledReport::Status::kConverged) return report;
-  const Eigen::Index m = contacts.count();
-  const Eigen::MatrixXd Jt = contacts.J.bottomRows(2 * m);
-  Eigen::VectorXd compliance;
-  const Eigen::MatrixXd D = contactResponse(contacts, response, compliance).bottomRightCorner(2 * m, 2 * m);
+CoupledReport ReferenceSolver::Impl::settle(const StepVector& rhs, const Eigen::VectorXd& body_forces,
+                                            const Eigen::MatrixXd& Jc, const Eigen::VectorXd& bias,
+                                            const Eigen::VectorXd& compliance, const SmallProblem& small,
+                                            const CoupledOptions& options, Eigen::VectorXd& unknowns,
+                                            Eigen::VectorXd& r, StepVector& x) {
+  CoupledReport report;
   const Eigen::MatrixXd none(0, problem->bodyUnknowns());
   for (int it = 0; it < kMaximumCorrections; ++it) {
-    const CoupledReport part = minimise(rhs, body_forces + Jt.transpose() * f, none, Eigen::VectorXd(0), options, unknowns, x);
+    const CoupledReport part =
+        minimise(rhs, body_forces + Jc.transpose() * r, none, Eigen::VectorXd(0), options, unknowns, x);
     report.iterations += part.iterations;
     report.solves += part.solves;
     report.residual = part.residual;
     report.status = part.status;
     report.message = part.message;
     if (part.status != CoupledReport::Status::kConverged) return report;
-    const Eigen::VectorXd w = Jt * gatherBodies(*problem, x.bodies) + contacts.bias.tail(2 * m) +
-                              compliance.tail(2 * m).cwiseProduct(f);
-    Eigen::VectorXd next = f;
-    const DiscQpReport discs = solveDiscQp(D, w - D * f, radius, kSmallTolerance, kMaximumSweeps, next);
+    const Eigen::VectorXd w = Jc * gatherBodies(*problem, x.bodies) + bias + compliance.cwiseProduct(r);
+    Eigen::VectorXd next = r;
+    const bool solved = small(w, next);
     // Of redundant contacts only what they do to the bodies is determined.
-    const double change = (Jt.transpose() * (next - f)).norm();
-    const double push = (Jt.transpose() * next).norm();
-    f = next;
-    if (discs.solved && change <= kLawFactor * options.tolerance * std::max(push, 1e-300)) return report;
+    const double change = (Jc.transpose() * (next - r)).norm();
+    const double push = (Jc.transpose() * next).norm();
+    r = next;
+    if (solved && change <= kLawFactor * options.tolerance * std::max(push, 1e-300)) return report;
   }
   report.status = CoupledReport::Status::kNotConverged;
-  report.message = "the friction problem did not settle";
+  report.message = "contact and liquid did not agree in " + std::to_string(kMaximumCorrections) + " solves";
   return report;
+}
+
+CoupledReport ReferenceSolver::Impl::minimiseFriction(const StepVector& rhs, const Eigen::VectorXd& body_forces,
+                                                      const ContactRows& contacts, const Eigen::VectorXd& radius,
+                                                      const CoupledOptions& options, Eigen::VectorXd& unknowns,
+                                                      Eigen::VectorXd& f, StepVector& x) {
+  const Eigen::Index m = contacts.count();
+  Eigen::VectorXd compliance;
+  const Eigen::MatrixXd D = contactResponse(contacts, response, compliance).bottomRightCorner(2 * m, 2 * m);
+  const auto small = [&](const Eigen::VectorXd& w, Eigen::VectorXd& next) {
+    return solveDiscQp(D, w - D * next, radius, kSmallTolerance, kMaximumSweeps, next).solved;
+  };
+  return settle(rhs, body_forces, contacts.J.bottomRows(2 * m), contacts.bias.tail(2 * m), compliance.tail(2 * m),
+                small, options, unknowns, f, x);
+}
+
+CoupledReport ReferenceSolver::Impl::minimiseLaw(const StepVector& rhs, const Eigen::VectorXd& body_forces,
+                                                 const ContactRows& contacts, const CoupledOptions& options,
+                                                 Eigen::VectorXd& unknowns, Eigen::VectorXd& r, StepVector& x) {
+  Eigen::VectorXd compliance;
+  const Eigen::MatrixXd D = contactResponse(contacts, response, compliance);
+  const auto small = [&](const Eigen::VectorXd& w, Eigen::VectorXd& next) {
+    return solveFrictionalContact(D, w - D * next, contacts.friction, kLawTolerance, next).solved;
+  };
+  return settle(rhs, body_forces, contacts.J, contacts.bias, compliance, small, options, unknowns, r, x);
 }
 
 ReferenceSolver::ReferenceSolver() : impl_(std::make_unique<Impl>()) {}
@@ -224,41 +260,39 @@ CoupledReport ReferenceSolver::solveWithContacts(const StepVector& rhs, const Co
   const Eigen::VectorXd start = s.unknownsOf(x, gatherBodies(*p.problem, x.bodies));
 
   CoupledReport report;
-  Eigen::VectorXd unknowns(n + m);
-  unknowns << start, r.head(m);
-  double change = 0.0;
-  for (int round = 0; round < kMaximumAlternations; ++round) {
-    const Eigen::VectorXd before = r;
-    CoupledReport part =
-        p.minimise(rhs, forces + Jt.transpose() * r.tail(2 * m), Jn, contacts.bias.head(m), options, unknowns, x);
-    r.head(m) = leastNorm(contacts, p.inverse_inertia, unknowns.tail(m));
-    if (part.status == CoupledReport::Status::kConverged && frictional) {
-      ++report.friction_iterations;
-      // It goes on from the stresses and pressures just found.
-      Eigen::VectorXd liquid = unknowns.head(n), f = r.tail(2 * m);
-      CoupledReport second = p.minimiseFriction(rhs, forces + Jn.transpose() * r.head(m), contacts,
-                                                contacts.friction.cwiseProduct(r.head(m)), options, liquid, f, x);
-      unknowns.head(n) = liquid;
-      r.tail(2 * m) = f;
-      second.iterations += part.iterations;
-      second.solves += part.solves;
-      part = second;
-    }
+  if (frictional) {
+    report = p.computeResponse();
+    if (report.status != CoupledReport::Status::kConverged) return report;
+  }
+  const auto add = [&report](const CoupledReport& part) {
     report.iterations += part.iterations;
     report.solves += part.solves;
     report.residual = part.residual;
     report.status = part.status;
     report.message = part.message;
-    if (part.status != CoupledReport::Status::kConverged || !frictional) return report;
+  };
+  Eigen::VectorXd unknowns(n + m);
+  unknowns << start, r.head(m);
+  for (int round = 0; round < kMaximumAlternations; ++round) {
+    const Eigen::VectorXd before = r;
+    add(p.minimise(rhs, forces + Jt.transpose() * r.tail(2 * m), Jn, contacts.bias.head(m), options, unknowns, x));
+    if (report.status != CoupledReport::Status::kConverged) return report;
+    r.head(m) = leastNorm(contacts, p.inverse_inertia, unknowns.tail(m));
+    if (!frictional) return report;
+    ++report.friction_iterations;
+    // It goes on from the stresses and pressures just found.
+    Eigen::VectorXd liquid = unknowns.head(n), f = r.tail(2 * m);
+    add(p.minimiseFriction(rhs, forces + Jn.transpose() * r.head(m), contacts,
+                           contacts.friction.cwiseProduct(r.head(m)), options, liquid, f, x));
+    if (report.status != CoupledReport::Status::kConverged) return report;
+    unknowns.head(n) = liquid;
+    r.tail(2 * m) = f;
     const Eigen::VectorXd push = contacts.J.transpose() * r;
-    change = (push - contacts.J.transpose() * before).norm() / std::max(push.norm(), 1e-300);
-    if (change <= kLawFactor * options.tolerance) return report;
+    const double change = (push - contacts.J.transpose() * before).norm();
+    if (change <= kLawFactor * options.tolerance * std::max(push.norm(), 1e-300)) return report;
   }
-  std::ostringstream text;
-  text << "staggered projections of " << m << " contacts stopped after " << kMaximumAlternations
-       << " alternations; the impulses still change by " << change << " of the largest";
-  report.message = text.str();
-  report.status = CoupledReport::Status::kNotConverged;
+  Eigen::VectorXd liquid = unknowns.head(n);
+  add(p.minimiseLaw(rhs, forces, contacts, options, liquid, r, x));
   return report;
 }
 

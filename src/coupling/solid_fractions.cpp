@@ -10,7 +10,10 @@ namespace {
 
 constexpr double kFar = 1e3;          // cell widths: no solid in sight
 constexpr double kLeastFluid = 1e-3;  // a face with less of it is closed: no tiny pivots
-constexpr int kMargin = 2;            // cells around a body in which its distance is wanted
+// A face's centre nearer to a surface than this, in cell widths, lies on it: what is left of its share of liquid would
+// be the only way into the cell behind it, a pivot as small as round-off.
+constexpr double kOnSurface = 1e-3;
+constexpr int kMargin = 2;  // cells around a body in which its distance is wanted
 
 int wrapped(int index, int n) { return ((index % n) + n) % n; }
 
@@ -124,7 +127,8 @@ void SolidSampler::sampleBody(const RigidBody& body, int index, SolidFractions& 
         for (int a = 0; a < 3; ++a) {
           Eigen::Vector3d shift = Eigen::Vector3d::Zero();
           shift[a] = -0.5 * h;
-          distance[a][c] = static_cast<float>(body.distance->distance(X_BW * (x_W + shift)) / h);
+          const double at_face = body.distance->distance(X_BW * (x_W + shift)) / h;
+          distance[a][c] = std::abs(at_face) < kOnSurface ? 0.0F : static_cast<float>(at_face);
         }
         std::array<double, 8> octants;
         octantFractions(*body.distance, x_B, R_WB, h, octants);
@@ -200,8 +204,8 @@ void SolidSampler::close(SolidFractions& out) const {
             if (g < 0 || walls_.fluid[a][g] == 0.0) {
               const std::array<int, 3> at = {f.low[0] + i, f.low[1] + j, f.low[2] + k};
               if (g >= 0 && (at[a] == 0 || at[a] == l.n[a])) {
-                f.at_walls.push_back({a, g, at[a] == 0 ? g : g - l.stride[a], fraction,
-                                      grid_.faceCenter(a, at[0], at[1], at[2])});
+                f.at_walls.push_back(
+                    {a, g, at[a] == 0 ? g : g - l.stride[a], fraction, grid_.faceCenter(a, at[0], at[1], at[2])});
               }
               fraction = 0.0;
             } else if (solid[a][g] > 1.0 - kLeastFluid) {

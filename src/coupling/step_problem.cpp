@@ -36,7 +36,7 @@ void StepProblem::assemble(SolidFractions& solids, const std::vector<RigidBody>&
   if (discretisation == Discretisation::kFitted) {
     assembleFitted(solids, liquid_distance, rates);
   } else {
-    assembleFractions(solids, liquid_distance);
+    assembleFractions(solids, liquid_distance, rates);
   }
   enclosed = moveEnclosedRows(grid, solids, all_bodies, coefficients, liquid_distance, rows);
   op_.set(&coefficients, &rows);
@@ -87,9 +87,10 @@ void StepProblem::assembleFitted(SolidFractions& solids, const std::vector<doubl
   buildCoarseLevels(grid.lattice, geometry, viscous_number, coarse);
 }
 
-void StepProblem::assembleFractions(const SolidFractions& solids, const std::vector<double>& liquid_distance) {
+void StepProblem::assembleFractions(const SolidFractions& solids, const std::vector<double>& liquid_distance,
+                                    bool rates) {
   const FractionGeometry geometry = sampleFractions(grid, *bodies, solids, liquid_distance, viscous_number > 0.0);
-  buildFractionCoefficients(grid.lattice, geometry, viscous_number, coefficients);
+  buildFractionCoefficients(grid.lattice, geometry, viscous_number, coefficients, rates ? &strain : nullptr);
   buildFractionRows(grid, solids, *bodies, coefficients, rows);
   buildCoarseFractionLevels(grid.lattice, geometry, liquid_distance, viscous_number, coarse);
   flux_share = geometry.fluid;

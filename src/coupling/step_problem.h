@@ -82,7 +82,7 @@ class StepProblem {
 
  private:
   void assembleFitted(SolidFractions& solids, const std::vector<double>& liquid_distance, bool rates);
-  void assembleFractions(const SolidFractions& solids, const std::vector<double>& liquid_distance);
+  void assembleFractions(const SolidFractions& solids, const std::vector<double>& liquid_distance, bool rates);
   double stickingVelocity(const StickingLiquid& s, const Vector6d& row, const Eigen::Vector3d& gravity) const;
   // Dimensionless impulse on a body by the weight of the liquid between a contact and its rim.
   Vector6d enclosedImpulse(const EnclosedWeight& weight, const Eigen::Vector3d& gravity) const;

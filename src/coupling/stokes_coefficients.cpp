@@ -112,6 +112,18 @@ double liquidPart(double distance_low, double distance_high) {
   return std::clamp(wet / (wet - dry), kLeastLiquid, 1.0 + 2.0 * kLeastLiquid);
 }
 
+void StrainScales::resize(const Lattice& l) {
+  for (auto* fields : {&normal, &shear, &drag}) {
+    for (auto& field : *fields) field.assign(l.size, 0.0);
+  }
+}
+
+void StrainScales::fillHalos(const Lattice& l) {
+  for (auto* fields : {&normal, &shear, &drag}) {
+    for (auto& field : *fields) fillHalo(l, field);
+  }
+}
+
 void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double viscous_number,
                        StaggeredCoefficients<double>& out, StrainScales* strain) {
   out.resize(l, viscous_number > 0.0);
@@ -144,11 +156,7 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
   });
   if (!out.viscous) return;
 
-  if (strain != nullptr) {
-    for (auto* fields : {&strain->normal, &strain->shear, &strain->drag}) {
-      for (auto& field : *fields) field.assign(l.size, 0.0);
-    }
-  }
+  if (strain != nullptr) strain->resize(l);
   const SampleBuilder samples(l, geometry, out);
   forEachRow(l, [&](std::ptrdiff_t row, int, int) {
     for (auto c = row; c < row + width; ++c) {
@@ -185,12 +193,8 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
     fillHalo(l, out.normal[a]);
     fillHalo(l, out.drag[a]);
     for (int s = 0; s < 2; ++s) fillHalo(l, out.shear[a][s]);
-    if (strain != nullptr) {
-      fillHalo(l, strain->normal[a]);
-      fillHalo(l, strain->shear[a]);
-      fillHalo(l, strain->drag[a]);
-    }
   }
+  if (strain != nullptr) strain->fillHalos(l);
 }
 
 void buildBodyRows(const MacGrid& grid, const SolidFractions& solids, const std::vector<RigidBody>& bodies,

@@ -43,6 +43,9 @@ struct StrainScales {
   FaceField<double> normal;  // (U_a[c + a] - U_a[c]) -> D_aa
   FaceField<double> shear;   // t -> 2 D_ab
   FaceField<double> drag;    // slip past the solid -> shear of the film
+
+  void resize(const Lattice& lattice);  // all zero
+  void fillHalos(const Lattice& lattice);
 };
 
 // Coefficients of one level; `viscous_number` is that of the level. `strain`, if wanted, is filled only with viscosity.

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "coupling/solid_fractions.h"
+#include "coupling/step_operator.h"
 #include "coupling/sticking_liquid.h"
 #include "coupling/stokes_coefficients.h"
 #include "rigid/integration.h"
@@ -60,5 +61,27 @@ struct CouplingScene {
     buildBodyRows(grid, solids, bodies, geometry, coefficients, rows);
   }
 };
+
+// Gaussian numbers where there are unknowns, zero elsewhere.
+inline StepVector randomVector(const StaggeredCoefficients<double>& c, std::size_t bodies, unsigned seed,
+                               bool with_pressure) {
+  const Lattice& l = c.lattice;
+  std::mt19937 random(seed);
+  std::normal_distribution<double> gauss;
+  StepVector v;
+  v.resize(l, bodies);
+  v.setZero();
+  for (int k = 0; k < l.faceEnd(2); ++k) {
+    for (int j = 0; j < l.faceEnd(1); ++j) {
+      for (int i = 0; i < l.faceEnd(0); ++i) {
+        const auto at = l.index(i, j, k);
+        for (int a = 0; a < 3; ++a) v.velocity[a][at] = c.mass[a][at] > 0.0 ? gauss(random) : 0.0;
+        v.pressure[at] = with_pressure && c.has_pressure[at] ? gauss(random) : 0.0;
+      }
+    }
+  }
+  for (auto& twist : v.bodies) twist = Vector6d::NullaryExpr([&] { return gauss(random); });
+  return v;
+}
 
 }  // namespace monolith

@@ -10,6 +10,7 @@
 
 #include "coupling/direct_solver.h"
 #include "coupling/fast_solver.h"
+#include "coupling_scene.h"
 #include "rigid/integration.h"
 
 namespace monolith {
@@ -404,27 +405,6 @@ TEST(FractionRows, OfAWideBodyAreThoseOfItsSurface) {
 
 // -- the operator
 
-StepVector randomVector(const FractionScene& scene, unsigned seed, bool with_pressure) {
-  const Lattice& l = scene.grid.lattice;
-  const auto& c = scene.problem.coefficients;
-  std::mt19937 random(seed);
-  std::normal_distribution<double> gauss;
-  StepVector v;
-  v.resize(l, scene.bodies.size());
-  v.setZero();
-  for (int k = 0; k < l.faceEnd(2); ++k) {
-    for (int j = 0; j < l.faceEnd(1); ++j) {
-      for (int i = 0; i < l.faceEnd(0); ++i) {
-        const auto at = l.index(i, j, k);
-        for (int a = 0; a < 3; ++a) v.velocity[a][at] = c.mass[a][at] > 0.0 ? gauss(random) : 0.0;
-        v.pressure[at] = with_pressure && c.has_pressure[at] ? gauss(random) : 0.0;
-      }
-    }
-  }
-  for (auto& twist : v.bodies) twist = Vector6d::NullaryExpr([&] { return gauss(random); });
-  return v;
-}
-
 double product(const FractionScene& scene, StepVector x, const StepVector& y) {
   const Lattice& l = scene.grid.lattice;
   clearHalo(l, x.pressure);
@@ -446,12 +426,13 @@ TEST(FractionOperator, IsSymmetricAndPositiveSemiDefinite) {
         StepOperator op;
         op.set(&scene.problem.coefficients, &scene.problem.rows);
         for (unsigned seed = 0; seed < 3; ++seed) {
-          StepVector x = randomVector(scene, 10 + seed, true), y = randomVector(scene, 50 + seed, true), Ax, Ay;
+          StepVector x = randomVector(scene.problem.coefficients, scene.bodies.size(), 10 + seed, true),
+                     y = randomVector(scene.problem.coefficients, scene.bodies.size(), 50 + seed, true), Ax, Ay;
           op.apply(x, Ax);
           op.apply(y, Ay);
           const double scale = std::sqrt(std::abs(product(scene, Ax, Ax) * product(scene, y, y)));
           EXPECT_NEAR(product(scene, y, Ax), product(scene, x, Ay), 1e-12 * scale);
-          StepVector u = randomVector(scene, 90 + seed, false), Au;
+          StepVector u = randomVector(scene.problem.coefficients, scene.bodies.size(), 90 + seed, false), Au;
           op.apply(u, Au);
           const double total = product(scene, u, Au);
           double inertia = 0.0;
@@ -478,7 +459,8 @@ TEST(FractionOperator, PairsAreAdjoint) {
   StepOperator op;
   op.set(&scene.problem.coefficients, &scene.problem.rows);
   // (v, J^T of liquid) = (J v, liquid), each side from a different part of the operator.
-  StepVector liquid = randomVector(scene, 3, true), solids = randomVector(scene, 4, false), A_liquid, A_solids;
+  StepVector liquid = randomVector(scene.problem.coefficients, scene.bodies.size(), 3, true),
+             solids = randomVector(scene.problem.coefficients, scene.bodies.size(), 4, false), A_liquid, A_solids;
   for (auto& twist : liquid.bodies) twist.setZero();
   for (auto& field : solids.velocity) std::fill(field.begin(), field.end(), 0.0);
   op.apply(liquid, A_liquid);

@@ -7,26 +7,6 @@
 namespace monolith {
 namespace {
 
-StepVector randomVector(const CouplingScene& scene, unsigned seed, bool with_pressure) {
-  const Lattice& l = scene.grid.lattice;
-  std::mt19937 random(seed);
-  std::normal_distribution<double> gauss;
-  StepVector v;
-  v.resize(l, scene.bodies.size());
-  v.setZero();
-  for (int k = 0; k < l.faceEnd(2); ++k) {
-    for (int j = 0; j < l.faceEnd(1); ++j) {
-      for (int i = 0; i < l.faceEnd(0); ++i) {
-        const auto c = l.index(i, j, k);
-        for (int a = 0; a < 3; ++a) v.velocity[a][c] = scene.coefficients.mass[a][c] > 0.0 ? gauss(random) : 0.0;
-        v.pressure[c] = with_pressure && scene.coefficients.has_pressure[c] ? gauss(random) : 0.0;
-      }
-    }
-  }
-  for (auto& twist : v.bodies) twist = Vector6d::NullaryExpr([&] { return gauss(random); });
-  return v;
-}
-
 double product(const CouplingScene& scene, StepVector x, StepVector y) {
   const Lattice& l = scene.grid.lattice;
   clearHalo(l, x.pressure);
@@ -48,7 +28,8 @@ TEST_P(StepOperatorTest, IsSymmetricSoActionIsReaction) {
     const CouplingScene scene(seed, GetParam());
     StepOperator op;
     op.set(&scene.coefficients, &scene.rows);
-    StepVector x = randomVector(scene, 10 + seed, true), y = randomVector(scene, 50 + seed, true), Ax, Ay;
+    StepVector x = randomVector(scene.coefficients, scene.bodies.size(), 10 + seed, true),
+               y = randomVector(scene.coefficients, scene.bodies.size(), 50 + seed, true), Ax, Ay;
     op.apply(x, Ax);
     op.apply(y, Ay);
     const double scale = std::sqrt(std::abs(product(scene, Ax, Ax) * product(scene, y, y)));
@@ -61,7 +42,7 @@ TEST_P(StepOperatorTest, VelocityBlockDissipates) {
     const CouplingScene scene(seed, GetParam());
     StepOperator op;
     op.set(&scene.coefficients, &scene.rows);
-    StepVector x = randomVector(scene, 10 + seed, false), Ax;
+    StepVector x = randomVector(scene.coefficients, scene.bodies.size(), 10 + seed, false), Ax;
     op.apply(x, Ax);
     EXPECT_GT(product(scene, x, Ax), 0.0) << "seed " << seed;
   }
@@ -71,7 +52,7 @@ TEST_P(StepOperatorTest, BodyForcesAreTheBodiesPartOfTheWhole) {
   const CouplingScene scene(4, GetParam());
   StepOperator op;
   op.set(&scene.coefficients, &scene.rows);
-  StepVector x = randomVector(scene, 1, true), Ax;
+  StepVector x = randomVector(scene.coefficients, scene.bodies.size(), 1, true), Ax;
   for (auto& twist : x.bodies) twist.setZero();
   op.apply(x, Ax);
   std::vector<Vector6d> forces(scene.bodies.size());
@@ -82,7 +63,8 @@ TEST_P(StepOperatorTest, BodyForcesAreTheBodiesPartOfTheWhole) {
 }
 
 TEST_P(StepOperatorTest, MotionOfAllAsOneRigidBodyCostsNoForce) {
-  // Translation everywhere: no strain, no divergence, whatever the bodies' shapes. Walls would resist, so look away from them.
+  // Translation everywhere: no strain, no divergence, whatever the bodies' shapes. Walls would resist, so look away
+  // from them.
   const CouplingScene scene(1, GetParam());
   const Lattice& l = scene.grid.lattice;
   StepOperator op;

@@ -57,9 +57,10 @@ struct RandomStep {
       body.shapes = {shape};
       body.mass = 1000.0 * std::pow(10.0, -3.0 + 7.0 * unit(random)) * volume(shape);
       body.inertia_Bcm = body.mass * 0.008 * Eigen::Vector3d(1.0, 1.2, 0.9).asDiagonal();
-      body.X_WB.translation() = Eigen::Vector3d((0.3 + 0.4 * unit(random)) * size[0], (0.3 + 0.4 * unit(random)) * size[1],
-                                                (0.2 + 0.25 * b) * size[2]);
-      body.X_WB.linear() = Eigen::Quaterniond(signedUnit(), signedUnit(), signedUnit(), signedUnit()).normalized().toRotationMatrix();
+      body.X_WB.translation() = Eigen::Vector3d((0.3 + 0.4 * unit(random)) * size[0],
+                                                (0.3 + 0.4 * unit(random)) * size[1], (0.2 + 0.25 * b) * size[2]);
+      body.X_WB.linear() =
+          Eigen::Quaterniond(signedUnit(), signedUnit(), signedUnit(), signedUnit()).normalized().toRotationMatrix();
       bodies.push_back(makeRigidBody(body, 0.05));
       for (int d = 0; d < 6; ++d) bodies.back().twist[d] = (d < 3 ? 1.0 : 5.0) * signedUnit();
     }
@@ -128,7 +129,8 @@ TEST(StepProperties, OperatorIsSymmetricAndItsVelocityBlockPositive) {
       StepVector x = step.start();
       const auto& c = step.problem.coefficients;
       for (int a = 0; a < 3; ++a) {
-        for (std::size_t i = 0; i < x.velocity[a].size(); ++i) x.velocity[a][i] = c.mass[a][i] > 0.0 ? normal(random) : 0.0;
+        for (std::size_t i = 0; i < x.velocity[a].size(); ++i)
+          x.velocity[a][i] = c.mass[a][i] > 0.0 ? normal(random) : 0.0;
         clearHalo(step.grid.lattice, x.velocity[a]);
       }
       for (std::size_t i = 0; i < x.pressure.size(); ++i) x.pressure[i] = c.has_pressure[i] ? normal(random) : 0.0;

@@ -1,5 +1,5 @@
-// `fast`, `direct` and `reference`, and the couplings `unified` and `iterative`, hold the same step: the same velocities,
-// pressures, twists and contact forces.
+// `fast`, `direct` and `reference`, and the couplings `unified` and `iterative`, hold the same step: the same
+// velocities, pressures, twists and contact forces.
 
 #include <gtest/gtest.h>
 
@@ -11,26 +11,10 @@
 #include "coupling/iterative_coupling.h"
 #include "coupling/reference_solver.h"
 #include "rigid/contact.h"
+#include "scene/solid_body.h"
 
 namespace monolith {
 namespace {
-
-BodyDescription box(const std::string& name, const Eigen::Vector3d& size, double density,
-                    const Eigen::Vector3d& position) {
-  BodyDescription body;
-  body.name = name;
-  Shape shape;
-  shape.kind = Shape::Kind::kBox;
-  shape.box_size = size;
-  shape.name = name;
-  body.shapes = {shape};
-  body.mass = density * size.prod();
-  const Eigen::Vector3d s = size.cwiseProduct(size);
-  body.inertia_Bcm =
-      (body.mass / 12.0 * Eigen::Vector3d(s[1] + s[2], s[0] + s[2], s[0] + s[1])).asDiagonal().toDenseMatrix();
-  body.X_WB.translation() = position;
-  return body;
-}
 
 // A stack of two boxes that slides and tips on the floor of a tank of liquid, a third one free.
 struct StackStep {
@@ -48,9 +32,9 @@ struct StackStep {
     grid = makeGrid();
     walls.inside = Eigen::AlignedBox3d(Eigen::Vector3d::Zero(), Eigen::Vector3d(0.8, 0.8, 1.0));
     const double h = grid.h;
-    bodies.push_back(makeRigidBody(box("low", {0.42, 0.37, 0.25}, 2000.0 * density_scale, {0.37, 0.41, 0.125}), h));
-    bodies.push_back(makeRigidBody(box("high", {0.25, 0.3, 0.21}, 3000.0 * density_scale, {0.42, 0.37, 0.355}), h));
-    bodies.push_back(makeRigidBody(box("loose", {0.2, 0.22, 0.21}, 700.0 * density_scale, {0.45, 0.5, 0.8}), h));
+    bodies.push_back(makeRigidBody(boxBody("low", {0.42, 0.37, 0.25}, 2000.0 * density_scale, {0.37, 0.41, 0.125}), h));
+    bodies.push_back(makeRigidBody(boxBody("high", {0.25, 0.3, 0.21}, 3000.0 * density_scale, {0.42, 0.37, 0.355}), h));
+    bodies.push_back(makeRigidBody(boxBody("loose", {0.2, 0.22, 0.21}, 700.0 * density_scale, {0.45, 0.5, 0.8}), h));
     bodies[0].twist << 0.3, 0.1, 0.0, 0.0, 0.0, 0.2;
     bodies[1].twist << -0.2, 0.4, -0.1, 0.0, 0.1, 0.5;
     SolidSampler(grid).sample(bodies, solids);

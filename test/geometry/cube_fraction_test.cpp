@@ -14,8 +14,8 @@ double counted(double distance, const Eigen::Vector3d& normal) {
   for (int k = 0; k < kSide; ++k) {
     for (int j = 0; j < kSide; ++j) {
       for (int i = 0; i < kSide; ++i) {
-        const Eigen::Vector3d x = (Eigen::Vector3d(i, j, k) + Eigen::Vector3d::Constant(0.5)) / kSide -
-                                  Eigen::Vector3d::Constant(0.5);
+        const Eigen::Vector3d x =
+            (Eigen::Vector3d(i, j, k) + Eigen::Vector3d::Constant(0.5)) / kSide - Eigen::Vector3d::Constant(0.5);
         inside += distance + normal.dot(x) < 0.0;
       }
     }

@@ -57,9 +57,12 @@ Shape cylinder(double radius, double length) {
 // In the shape's own frame.
 bool isInside(const Shape& shape, const Vector3d& p) {
   switch (shape.kind) {
-    case Shape::Kind::kBox: return (2.0 * p.cwiseAbs().array() <= shape.box_size.array()).all();
-    case Shape::Kind::kSphere: return p.norm() <= shape.radius;
-    default: return p.head<2>().norm() <= shape.radius && 2.0 * std::abs(p.z()) <= shape.length;
+    case Shape::Kind::kBox:
+      return (2.0 * p.cwiseAbs().array() <= shape.box_size.array()).all();
+    case Shape::Kind::kSphere:
+      return p.norm() <= shape.radius;
+    default:
+      return p.head<2>().norm() <= shape.radius && 2.0 * std::abs(p.z()) <= shape.length;
   }
 }
 
@@ -67,7 +70,8 @@ bool isInside(const Shape& shape, const Vector3d& p) {
 Vector3d surfacePoint(const Shape& shape, Random& random) {
   Vector3d p = random.inCube(1.0);
   switch (shape.kind) {
-    case Shape::Kind::kSphere: return shape.radius * p.normalized();
+    case Shape::Kind::kSphere:
+      return shape.radius * p.normalized();
     case Shape::Kind::kBox: {
       const int axis = static_cast<int>(random.uniform(0.0, 3.0));
       p[axis] = p[axis] < 0.0 ? -1.0 : 1.0;
@@ -169,9 +173,7 @@ TEST(ShapeUnion, IsTheMinimumInTheBodyFrame) {
   }
 }
 
-TEST(ShapeUnion, NeedsAShape) {
-  EXPECT_THROW(makeSignedDistance(std::vector<Shape>(), 0.1), std::invalid_argument);
-}
+TEST(ShapeUnion, NeedsAShape) { EXPECT_THROW(makeSignedDistance(std::vector<Shape>(), 0.1), std::invalid_argument); }
 
 }  // namespace
 }  // namespace monolith

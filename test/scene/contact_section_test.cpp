@@ -21,7 +21,8 @@ class ContactSection : public testing::Test {
                                    "tank: {size: [1.0, 0.8, 0.6], cell_width: 0.1}\n"
                                    "bodies:\n"
                                    "  - {name: ball, urdf: ball.urdf, position: [0, 0, 0.3], material: rubber}\n"
-                                   "  - {name: other, urdf: ball.urdf, position: [0.3, 0, 0.3]}\n" + contact),
+                                   "  - {name: other, urdf: ball.urdf, position: [0.3, 0, 0.3]}\n" +
+                                       contact),
                      SceneResolver());
   }
   std::string errorOf(const std::string& contact) const {
@@ -45,8 +46,9 @@ TEST_F(ContactSection, DefaultIsNeitherFrictionNorRestitution) {
 }
 
 TEST_F(ContactSection, PairsInheritWhatTheyDoNotSay) {
-  const Scene scene = load("contact: {friction: 0.3, restitution: 0.2, pairs: [{between: [rubber, walls], friction: 0.9}, "
-                           "{between: [other, ball], restitution: 1}]}\n");
+  const Scene scene = load(
+      "contact: {friction: 0.3, restitution: 0.2, pairs: [{between: [rubber, walls], friction: 0.9}, "
+      "{between: [other, ball], restitution: 1}]}\n");
   ASSERT_EQ(scene.contact.pairs.size(), 2u);
   EXPECT_EQ(scene.contact.pairs[0].friction, 0.9);
   EXPECT_EQ(scene.contact.pairs[0].restitution, 0.2);

@@ -63,8 +63,8 @@ std::string violation(double mass, const Vector3d& moments) {
 
 TEST(MassProperties, ViolationsAreNamed) {
   EXPECT_EQ(violation(1.0, Vector3d(1.0, 2.0, 2.5)), "");
-  EXPECT_EQ(violation(1.0, Vector3d(1.0, 1.0, 2.0)), "");         // a flat disc, on the limit
-  EXPECT_EQ(violation(1.0, Vector3d(1.0, 1.0, 2.0000005)), "");   // and within the slack
+  EXPECT_EQ(violation(1.0, Vector3d(1.0, 1.0, 2.0)), "");        // a flat disc, on the limit
+  EXPECT_EQ(violation(1.0, Vector3d(1.0, 1.0, 2.0000005)), "");  // and within the slack
   EXPECT_NE(violation(1.0, Vector3d(1.0, 1.0, 2.00001)).find("triangle inequality"), std::string::npos);
   EXPECT_NE(violation(1.0, Vector3d(-1.0, 2.0, 2.0)).find("positive definite"), std::string::npos);
   EXPECT_NE(violation(1.0, Vector3d::Zero()).find("positive definite"), std::string::npos);

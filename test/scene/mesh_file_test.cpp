@@ -48,7 +48,8 @@ std::string dae(const std::string& up_axis) {
   std::ostringstream text;
   text << R"(<?xml version="1.0"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
-<asset><unit name="centimeter" meter="0.01"/><up_axis>)" << up_axis << R"(</up_axis></asset>
+<asset><unit name="centimeter" meter="0.01"/><up_axis>)"
+       << up_axis << R"(</up_axis></asset>
 <library_geometries><geometry id="g"><mesh>
 <source id="p"><float_array id="pa" count="12">)";
   for (const auto& c : kCorners) text << c[0] << " " << c[1] << " " << c[2] << " ";
@@ -98,8 +99,7 @@ TEST(MeshFile, ReadsObjStlAndDae) {
 TEST(MeshFile, AppliesTheScaleAndKeepsAMirroredMeshOutward) {
   const TemporaryFolder folder;
   const std::string file = folder.write("a.obj", obj(4, false));
-  expectTetrahedron(loadMeshFile(file, Vector3d(0.1, 0.2, 1.0)),
-                    AlignedBox3d(Vector3d::Zero(), Vector3d(0.1, 0.4, 3)));
+  expectTetrahedron(loadMeshFile(file, Vector3d(0.1, 0.2, 1.0)), AlignedBox3d(Vector3d::Zero(), Vector3d(0.1, 0.4, 3)));
   expectTetrahedron(loadMeshFile(file, Vector3d(-1, 1, 1)), AlignedBox3d(Vector3d(-1, 0, 0), Vector3d(0, 2, 3)));
 }
 

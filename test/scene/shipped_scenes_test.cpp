@@ -31,13 +31,16 @@ Matrix3d unitInertia(const Shape& shape) {
   const double v = volume(shape);
   const auto fromMoments = [](const Vector3d& m) { return Matrix3d((Vector3d::Constant(m.sum()) - m).asDiagonal()); };
   switch (shape.kind) {
-    case Shape::Kind::kBox: return fromMoments(v / 12.0 * shape.box_size.cwiseProduct(shape.box_size));
-    case Shape::Kind::kSphere: return fromMoments(Vector3d::Constant(v / 5.0 * shape.radius * shape.radius));
+    case Shape::Kind::kBox:
+      return fromMoments(v / 12.0 * shape.box_size.cwiseProduct(shape.box_size));
+    case Shape::Kind::kSphere:
+      return fromMoments(Vector3d::Constant(v / 5.0 * shape.radius * shape.radius));
     case Shape::Kind::kCylinder: {
       const double across = v / 4.0 * shape.radius * shape.radius;
       return fromMoments(Vector3d(across, across, v / 12.0 * shape.length * shape.length));
     }
-    case Shape::Kind::kMesh: break;
+    case Shape::Kind::kMesh:
+      break;
   }
   Matrix3d second = Matrix3d::Zero();
   Vector3d first = Vector3d::Zero();
@@ -55,9 +58,9 @@ Matrix3d unitInertia(const Shape& shape) {
 
 TEST(ShippedUrdfs, MassAndInertiaAreThoseOfTheDensity) {
   const std::map<std::string, double> densities = {
-      {"steel_sphere", 7800},  {"aluminium_box", 2700},  {"torus", 1500},
-      {"light_ball", 100},     {"wood_cylinder", 900},   {"tencate_sphere", 1120},
-      {"stack_bottom", 1500},  {"stack_middle", 2500},   {"stack_top", 8000}};
+      {"steel_sphere", 7800}, {"aluminium_box", 2700}, {"torus", 1500},
+      {"light_ball", 100},    {"wood_cylinder", 900},  {"tencate_sphere", 1120},
+      {"stack_bottom", 1500}, {"stack_middle", 2500},  {"stack_top", 8000}};
   std::size_t found = 0;
   for (const auto& entry : fs::directory_iterator(kSource / "urdf")) {
     if (entry.path().extension() != ".urdf") continue;
@@ -65,8 +68,7 @@ TEST(ShippedUrdfs, MassAndInertiaAreThoseOfTheDensity) {
     ASSERT_NE(density, densities.end()) << entry.path() << " has no density in this test";
     BodyDescription body;
     const std::string xml = readTextFile(entry.path().string());
-    const auto errors =
-        readUrdfBody({entry.path().string(), (kSource / "urdf").string(), xml}, SceneResolver(), body);
+    const auto errors = readUrdfBody({entry.path().string(), (kSource / "urdf").string(), xml}, SceneResolver(), body);
     ASSERT_TRUE(errors.empty()) << errors.front();
     ASSERT_EQ(body.shapes.size(), 1u);
     EXPECT_NEAR(body.mass, density->second * volume(body.shapes[0]), 1e-6 * body.mass) << entry.path();
@@ -152,11 +154,35 @@ TEST(SceneTemplate, LoadsAndNamesEveryKey) {
   const Scene scene = loadScene(file, SceneResolver());
   EXPECT_EQ(scene.bodies.size(), 2u);
   const std::string text = readTextFile(file);
-  for (const char* key :
-       {"size:", "origin:", "cell_width:", "periodic:", "density:", "dynamic_viscosity:", "fill_level:", "boxes:",
-        "min:", "max:", "gravity:", "time_step:", "tolerance:", "maximum_iterations:", "threads:", "cfl:", "name:",
-        "urdf:", "urdf_parameter:", "position:", "rpy:", "quaternion:", "velocity:", "angular_velocity:", "motion:",
-        "twist:", "amplitude:", "frequency:", "phase:"}) {
+  for (const char* key : {"size:",
+                          "origin:",
+                          "cell_width:",
+                          "periodic:",
+                          "density:",
+                          "dynamic_viscosity:",
+                          "fill_level:",
+                          "boxes:",
+                          "min:",
+                          "max:",
+                          "gravity:",
+                          "time_step:",
+                          "tolerance:",
+                          "maximum_iterations:",
+                          "threads:",
+                          "cfl:",
+                          "name:",
+                          "urdf:",
+                          "urdf_parameter:",
+                          "position:",
+                          "rpy:",
+                          "quaternion:",
+                          "velocity:",
+                          "angular_velocity:",
+                          "motion:",
+                          "twist:",
+                          "amplitude:",
+                          "frequency:",
+                          "phase:"}) {
     EXPECT_NE(text.find(key), std::string::npos) << key;
   }
 }

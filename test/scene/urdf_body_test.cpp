@@ -27,8 +27,7 @@ std::string joint(const std::string& type, const std::string& origin = "") {
          "<axis xyz=\"0 0 1\"/><limit lower=\"0\" upper=\"1\" effort=\"1\" velocity=\"1\"/></joint>";
 }
 std::string inertial(double mass, const std::string& moments, const std::string& origin = "") {
-  return "<inertial>" + origin + "<mass value=\"" + std::to_string(mass) + "\"/><inertia " + moments +
-         "/></inertial>";
+  return "<inertial>" + origin + "<mass value=\"" + std::to_string(mass) + "\"/><inertia " + moments + "/></inertial>";
 }
 
 struct Result {
@@ -54,13 +53,13 @@ void expectRefused(const std::string& xml, const std::vector<std::string>& menti
 
 TEST(UrdfBody, FixedJointsMakeOneBody) {
   // Two halves of a dumb-bell, the second link turned by 90 degrees about z and its inertial frame moved.
-  const std::string xml = robot(
-      link("a", inertial(1.0, R"(ixx="0.1" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="0.2")") + kBall) +
-      link("b", inertial(3.0, R"(ixx="0.4" ixy="0" ixz="0" iyy="0.6" iyz="0" izz="0.8")",
-                         R"(<origin xyz="1 0 0" rpy="0 0 0"/>)") +
-                    R"(<collision><origin xyz="0.5 0 0" rpy="0 0 0"/>
+  const std::string xml =
+      robot(link("a", inertial(1.0, R"(ixx="0.1" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="0.2")") + kBall) +
+            link("b", inertial(3.0, R"(ixx="0.4" ixy="0" ixz="0" iyy="0.6" iyz="0" izz="0.8")",
+                               R"(<origin xyz="1 0 0" rpy="0 0 0"/>)") +
+                          R"(<collision><origin xyz="0.5 0 0" rpy="0 0 0"/>
                       <geometry><box size="1 2 3"/></geometry></collision>)") +
-      joint("fixed", R"(<origin xyz="2 0 0" rpy="0 0 1.5707963267948966"/>)"));
+            joint("fixed", R"(<origin xyz="2 0 0" rpy="0 0 1.5707963267948966"/>)"));
   const Result result = read(xml);
   ASSERT_EQ(result.errors, "");
   const BodyDescription& body = result.body;
@@ -81,11 +80,11 @@ TEST(UrdfBody, FixedJointsMakeOneBody) {
 }
 
 TEST(UrdfBody, ReadsEveryPrimitiveAndLinksWithoutInertial) {
-  const Result result = read(robot(
-      link("a", std::string(kInertial) + kBall +
-                    R"(<collision><geometry><cylinder radius="0.2" length="0.7"/></geometry></collision>
+  const Result result =
+      read(robot(link("a", std::string(kInertial) + kBall +
+                               R"(<collision><geometry><cylinder radius="0.2" length="0.7"/></geometry></collision>
                        <collision><geometry><box size="1 2 3"/></geometry></collision>)") +
-      link("b", "") + joint("fixed")));
+                 link("b", "") + joint("fixed")));
   ASSERT_EQ(result.errors, "");
   ASSERT_EQ(result.body.shapes.size(), 3u);
   EXPECT_EQ(result.body.shapes[0].kind, Shape::Kind::kSphere);
@@ -144,9 +143,10 @@ TEST(UrdfBody, ParserMessagesBecomePartOfTheError) {
 }
 
 TEST(UrdfBody, SeveralViolationsAreReportedTogether) {
-  const Result result = read(robot(
-      link("a", std::string(kInertial) + R"(<collision><geometry><sphere radius="-1"/></geometry></collision>
-      <collision><geometry><box size="0 1 1"/></geometry></collision>)") + link("b", "") + joint("revolute")));
+  const Result result =
+      read(robot(link("a", std::string(kInertial) + R"(<collision><geometry><sphere radius="-1"/></geometry></collision>
+      <collision><geometry><box size="0 1 1"/></geometry></collision>)") +
+                 link("b", "") + joint("revolute")));
   EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 3);
 }
 
@@ -154,9 +154,9 @@ TEST(UrdfBody, RelativeMeshPathsBecomeAbsoluteInTheText) {
   const TemporaryFolder folder;
   folder.write("meshes/t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
   const std::string geometry = R"(<geometry><mesh filename="meshes/t.obj" scale="0.1 0.1 0.1"/></geometry>)";
-  const Result result = read(
-      robot(link("a", kInertial + ("<visual>" + geometry + "</visual><collision>" + geometry + "</collision>"))),
-      folder.path());
+  const Result result =
+      read(robot(link("a", kInertial + ("<visual>" + geometry + "</visual><collision>" + geometry + "</collision>"))),
+           folder.path());
   ASSERT_EQ(result.errors, "");
   ASSERT_TRUE(result.body.shapes[0].mesh);
   EXPECT_NEAR(volume(result.body.shapes[0]), 1e-3 / 6.0, 1e-9);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "scene/solid_body.h"
 #include "simulation/contact_laws.h"
 #include "simulation/simulation.h"
 
@@ -11,23 +12,6 @@ namespace monolith {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
-
-BodyDescription body(const std::string& name, Shape::Kind kind, const Eigen::Vector3d& size, double density,
-                     const Eigen::Vector3d& position) {
-  BodyDescription out;
-  out.name = name;
-  Shape shape;
-  shape.kind = kind;
-  shape.box_size = size;
-  shape.radius = 0.5 * size[0];
-  shape.name = name;
-  out.shapes = {shape};
-  out.mass = density * volume(shape);
-  const Eigen::Vector3d s = size.cwiseProduct(size);
-  out.inertia_Bcm = out.mass / 12.0 * Eigen::Vector3d(s[1] + s[2], s[0] + s[2], s[0] + s[1]).asDiagonal();
-  out.X_WB.translation() = position;
-  return out;
-}
 
 // A box on a floor that is tilted by `angle`, in a full tank or a dry one.
 Scene slope(double angle, bool wet) {
@@ -39,7 +23,7 @@ Scene slope(double angle, bool wet) {
   scene.liquid.fill_level = wet ? 0.3 : 0.0;
   scene.gravity = 9.81 * Eigen::Vector3d(std::sin(angle), 0.0, -std::cos(angle));
   scene.contact.friction = 0.5;
-  scene.bodies.push_back(body("box", Shape::Kind::kBox, {0.16, 0.16, 0.1}, 2500.0, {0.2, 0.2, 0.05}));
+  scene.bodies.push_back(boxBody("box", {0.16, 0.16, 0.1}, 2500.0, {0.2, 0.2, 0.05}));
   return scene;
 }
 
@@ -87,7 +71,7 @@ TEST(Restitution, BallReboundsAtItsShareOfTheSpeedAndComesToRest) {
   Scene scene = slope(0.0, false);
   scene.time_step = 0.002;
   scene.contact.restitution = 0.8;
-  scene.bodies[0] = body("ball", Shape::Kind::kSphere, {0.1, 0.1, 0.1}, 1000.0, {0.3, 0.2, 0.15});
+  scene.bodies[0] = sphereBody("ball", 0.05, 1000.0, {0.3, 0.2, 0.15});
   Simulation simulation(scene);
   double down = 0.0, up = 0.0;
   for (int i = 0; i < 120; ++i) {
@@ -112,8 +96,8 @@ TEST(ContactLaws, BodiesWinOverMaterialsAndThoseOverTheDefault) {
     scene.bodies.push_back(description);
   }
   scene.contact.friction = 0.1;
-  scene.contact.pairs = {{"rubber", "rubber", 0.2, 0.0}, {"walls", "rubber", 0.3, 0.0}, {"b", "a", 0.4, 0.5},
-                         {"rubber", "c", 0.6, 0.0}};
+  scene.contact.pairs = {
+      {"rubber", "rubber", 0.2, 0.0}, {"walls", "rubber", 0.3, 0.0}, {"b", "a", 0.4, 0.5}, {"rubber", "c", 0.6, 0.0}};
   const ContactLaws laws(scene);
   EXPECT_EQ(laws.of(0, 1).friction, 0.4);
   EXPECT_EQ(laws.of(1, 0).restitution, 0.5);

@@ -25,8 +25,7 @@ class FgmresTest : public ::testing::Test {
   }
   LinearMap apply = [this](const std::vector<double>& x, std::vector<double>& y) {
     y.resize(x.size());
-    Eigen::Map<Eigen::VectorXd>(y.data(), y.size()) =
-        matrix * Eigen::Map<const Eigen::VectorXd>(x.data(), x.size());
+    Eigen::Map<Eigen::VectorXd>(y.data(), y.size()) = matrix * Eigen::Map<const Eigen::VectorXd>(x.data(), x.size());
   };
   double residual(const std::vector<double>& x) const {
     return (Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size()) -
@@ -43,7 +42,8 @@ TEST_F(FgmresTest, SolvesAnIndefiniteSystemAndReportsTheTrueResidual) {
   options.absolute_tolerance = 1e-9;
   options.maximum_iterations = 2000;
   options.restart = 130;
-  const KrylovReport report = Fgmres().solve(apply, [](const auto& r, auto& z) { z = r; }, rhs, x, options);
+  const KrylovReport report = Fgmres().solve(
+      apply, [](const auto& r, auto& z) { z = r; }, rhs, x, options);
   EXPECT_TRUE(report.converged);
   EXPECT_LE(residual(x), 1e-9);
   EXPECT_NEAR(report.residual, residual(x), 1e-12);
@@ -58,7 +58,8 @@ TEST_F(FgmresTest, AnExactPreconditionerNeedsOneIteration) {
       apply,
       [&](const std::vector<double>& r, std::vector<double>& z) {
         z.resize(r.size());
-        Eigen::Map<Eigen::VectorXd>(z.data(), z.size()) = lu.solve(Eigen::Map<const Eigen::VectorXd>(r.data(), r.size()));
+        Eigen::Map<Eigen::VectorXd>(z.data(), z.size()) =
+            lu.solve(Eigen::Map<const Eigen::VectorXd>(r.data(), r.size()));
       },
       rhs, x, options);
   EXPECT_TRUE(report.converged);
@@ -70,7 +71,8 @@ TEST_F(FgmresTest, SaysWhenItHasNotConverged) {
   KrylovOptions options;
   options.absolute_tolerance = 1e-12;
   options.maximum_iterations = 3;
-  const KrylovReport report = Fgmres().solve(apply, [](const auto& r, auto& z) { z = r; }, rhs, x, options);
+  const KrylovReport report = Fgmres().solve(
+      apply, [](const auto& r, auto& z) { z = r; }, rhs, x, options);
   EXPECT_FALSE(report.converged);
   EXPECT_EQ(report.iterations, 3);
   EXPECT_NEAR(report.residual, residual(x), 1e-12);
@@ -81,7 +83,11 @@ TEST_F(FgmresTest, ASolutionAsTheGuessCostsNothing) {
   std::vector<double> x(exact.data(), exact.data() + exact.size());
   KrylovOptions options;
   options.absolute_tolerance = 1e-8;
-  EXPECT_EQ(Fgmres().solve(apply, [](const auto& r, auto& z) { z = r; }, rhs, x, options).iterations, 0);
+  EXPECT_EQ(Fgmres()
+                .solve(
+                    apply, [](const auto& r, auto& z) { z = r; }, rhs, x, options)
+                .iterations,
+            0);
 }
 
 }  // namespace

@@ -22,11 +22,10 @@ TEST(Mprgp, AgreesWithTheSolutionByPivoting) {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
     MprgpOptions options;
     options.tolerance = 1e-11;
-    const MprgpReport report = solveMprgp([&](const auto& from, auto& to) { to = A * from; },
-                                          [&](const auto& from, auto& to) {
-                                            to = from.cwiseQuotient(A.diagonal().head(from.size()));
-                                          },
-                                          A.trace(), b, unconstrained, options, x);
+    const MprgpReport report =
+        solveMprgp([&](const auto& from, auto& to) { to = A * from; },
+                   [&](const auto& from, auto& to) { to = from.cwiseQuotient(A.diagonal().head(from.size())); },
+                   A.trace(), b, unconstrained, options, x);
     ASSERT_TRUE(report.converged) << report.residual;
     // Oracle: the unconstrained entries eliminated, the rest a linear complementarity problem.
     const Eigen::Index m = n - unconstrained;
@@ -53,9 +52,9 @@ TEST(Mprgp, ReportsThatItHasNotConverged) {
   MprgpOptions options;
   options.tolerance = 1e-12;
   options.maximum_iterations = 2;
-  const MprgpReport report = solveMprgp([&](const auto& from, auto& to) { to = A * from; },
-                                        [&](const auto& from, auto& to) { to = from; }, 1e6, Eigen::Vector3d(1, -2, 3),
-                                        1, options, x);
+  const MprgpReport report =
+      solveMprgp([&](const auto& from, auto& to) { to = A * from; }, [&](const auto& from, auto& to) { to = from; },
+                 1e6, Eigen::Vector3d(1, -2, 3), 1, options, x);
   EXPECT_FALSE(report.converged);
 }
 

@@ -1,0 +1,39 @@
+#include "scene/solid_body.h"
+
+namespace monolith {
+namespace {
+
+BodyDescription solidBody(Shape shape, double density, const Eigen::Vector3d& position) {
+  BodyDescription body;
+  body.name = shape.name;
+  body.mass = density * volume(shape);
+  body.shapes = {std::move(shape)};
+  body.X_WB.translation() = position;
+  return body;
+}
+
+}  // namespace
+
+BodyDescription sphereBody(const std::string& name, double radius, double density, const Eigen::Vector3d& position) {
+  Shape shape;
+  shape.kind = Shape::Kind::kSphere;
+  shape.radius = radius;
+  shape.name = name;
+  BodyDescription body = solidBody(shape, density, position);
+  body.inertia_Bcm = 0.4 * body.mass * radius * radius * Eigen::Matrix3d::Identity();
+  return body;
+}
+
+BodyDescription boxBody(const std::string& name, const Eigen::Vector3d& size, double density,
+                        const Eigen::Vector3d& position) {
+  Shape shape;
+  shape.kind = Shape::Kind::kBox;
+  shape.box_size = size;
+  shape.name = name;
+  BodyDescription body = solidBody(shape, density, position);
+  const Eigen::Vector3d s = size.cwiseProduct(size);
+  body.inertia_Bcm = body.mass / 12.0 * Eigen::Vector3d(s[1] + s[2], s[0] + s[2], s[0] + s[1]).asDiagonal();
+  return body;
+}
+
+}  // namespace monolith
