@@ -6,57 +6,21 @@
 #include <sstream>
 #include <vector>
 
+#include "solve/anderson.h"
 #include "solve/staggered_projections.h"
 
 namespace monolith {
 namespace {
 
 constexpr int kMaximumAlternations = 500;
+// Coulomb's law on the bodies alone is solved this much more closely than the whole, as far as digits allow.
+constexpr double kSmallFactor = 0.01;
 constexpr double kSmallTolerance = 1e-9;
-constexpr std::size_t kHistory = 8;
-constexpr double kGrowth = 2.0;  // of the residual, after which the history is dropped
-
-// Anderson mixing (Walker & Ni 2011, SIAM J. Numer. Anal. 49, 1715) of a fixed point g = G(g): plain alternation
-// contracts by the liquid's share of the resistance, which is nearly one for light bodies and thick liquids.
-class Mixing {
- public:
-  Eigen::VectorXd next(const Eigen::VectorXd& g, const Eigen::VectorXd& image) {
-    const Eigen::VectorXd residual = image - g;
-    // Where contacts change what they do the map has a kink, and what was learnt on its other side misleads.
-    const double size = residual.norm();
-    if (size > kGrowth * least_) {
-      residuals_.clear();
-      images_.clear();
-      last_residual_.resize(0);
-      least_ = size;
-      return image;
-    }
-    least_ = std::min(least_, size);
-    if (last_residual_.size() > 0) {
-      residuals_.push_back(residual - last_residual_);
-      images_.push_back(image - last_image_);
-      if (residuals_.size() > kHistory) {
-        residuals_.erase(residuals_.begin());
-        images_.erase(images_.begin());
-      }
-    }
-    last_residual_ = residual;
-    last_image_ = image;
-    if (residuals_.empty()) return image;
-    const auto columns = static_cast<Eigen::Index>(residuals_.size());
-    Eigen::MatrixXd R(g.size(), columns), I(g.size(), columns);
-    for (Eigen::Index i = 0; i < columns; ++i) {
-      R.col(i) = residuals_[i];
-      I.col(i) = images_[i];
-    }
-    return image - I * R.colPivHouseholderQr().solve(residual);
-  }
-
- private:
-  std::vector<Eigen::VectorXd> residuals_, images_;  // differences
-  Eigen::VectorXd last_residual_, last_image_;
-  double least_ = std::numeric_limits<double>::infinity();
-};
+constexpr int kHistory = 8;  // of the acceleration: plain alternation contracts by the liquid's share of the
+                             // resistance, which is nearly one for light bodies and thick liquids
+// Growth of the change, after which the history is dropped: where contacts change what they do the map has a kink, and
+// what was learnt on its other side misleads.
+constexpr double kGrowth = 2.0;
 
 }  // namespace
 
@@ -76,7 +40,10 @@ CoupledReport solveIteratively(StepSolver& solver, const StepProblem& problem, c
   CoupledReport report;
   StepVector pushed = rhs;
   double change = 0.0;
-  Mixing mixing;
+  const double small_tolerance = std::max(kSmallFactor * options.tolerance, kSmallTolerance);
+  Anderson anderson(kHistory, 1.0);
+  const std::vector<double> equal(static_cast<std::size_t>(n), 1.0);
+  double least = std::numeric_limits<double>::infinity();
   Eigen::VectorXd push = contacts.J.transpose() * r;
   for (int it = 0; it < kMaximumAlternations; ++it) {
     // Pressure, viscosity and bodies.
@@ -93,7 +60,7 @@ CoupledReport solveIteratively(StepSolver& solver, const StepProblem& problem, c
     // Contact alone: what the bodies would do under the liquid's forces just found.
     const Eigen::VectorXd v = gatherBodies(problem, x.bodies);
     const Eigen::VectorXd w = contacts.J * (v - K * push) + contacts.bias;
-    const FrictionReport friction = solveFrictionalContact(D, w, contacts.friction, kSmallTolerance, r);
+    const FrictionReport friction = solveFrictionalContact(D, w, contacts.friction, small_tolerance, r);
     report.friction_iterations += 1;
     const Eigen::VectorXd next = contacts.J.transpose() * r;
     const double size = std::max({next.dot(K * next), push.dot(K * push), v.dot(M * v), 1e-300});
@@ -102,7 +69,15 @@ CoupledReport solveIteratively(StepSolver& solver, const StepProblem& problem, c
       report.status = CoupledReport::Status::kConverged;
       return report;
     }
-    push = mixing.next(push, next);
+    const double moved = (next - push).norm();
+    if (moved > kGrowth * least) {
+      anderson.forget();
+      least = moved;
+    }
+    least = std::min(least, moved);
+    std::vector<double> mixed(push.begin(), push.end());
+    anderson.advance({next.begin(), next.end()}, equal, mixed);
+    push = Eigen::Map<const Eigen::VectorXd>(mixed.data(), n);
   }
   std::ostringstream text;
   text << "pressure and contact did not agree after " << kMaximumAlternations
