@@ -1,29 +1,28 @@
 #include "coupling/contact_states.h"
 
-#include <cmath>
+#include <algorithm>
 
 namespace monolith {
-namespace {
 
-// Friction this close to the cone's edge, relative to its radius, slips.
-constexpr double kOnCone = 1e-7;
+ContactStates openStates(const ContactRows& contacts) {
+  return {std::vector<ContactState>(contacts.count(), ContactState::kOpen),
+          Eigen::VectorXd::Zero(2 * contacts.count())};
+}
 
-}  // namespace
-
-ContactStates contactStates(const ContactRows& contacts, const Eigen::VectorXd& r) {
+ContactStates contactStates(const ContactRows& contacts, const Eigen::MatrixXd& D, const Eigen::VectorXd& w,
+                            const Eigen::VectorXd& r) {
   const Eigen::Index m = contacts.count();
-  ContactStates out;
-  out.state.assign(m, ContactState::kOpen);
-  out.direction = Eigen::VectorXd::Zero(2 * m);
+  ContactStates out = openStates(contacts);
   for (Eigen::Index c = 0; c < m; ++c) {
-    if (!(r[c] > 0.0)) continue;
-    const double radius = contacts.friction[c] * r[c];
-    const Eigen::Vector2d f = r.segment<2>(m + 2 * c);
-    if (f.norm() < radius * (1.0 - kOnCone)) {
+    const Eigen::Index t = m + 2 * c;
+    if (!(D(c, c) * r[c] > w[c])) continue;
+    const double response = std::max(D(t, t), D(t + 1, t + 1));
+    const Eigen::Vector2d trial = response * r.segment<2>(t) - w.segment<2>(t);
+    if (trial.norm() < response * contacts.friction[c] * r[c]) {
       out.state[c] = ContactState::kStick;
     } else {
       out.state[c] = ContactState::kSlip;
-      if (radius > 0.0) out.direction.segment<2>(2 * c) = f.normalized();
+      if (contacts.friction[c] > 0.0 && trial.norm() > 0.0) out.direction.segment<2>(2 * c) = trial.normalized();
     }
   }
   return out;
@@ -50,8 +49,8 @@ ContactBorder makeBorder(const ContactRows& contacts, const ContactStates& state
     out.C.col(i) = contacts.J.row(e).transpose();
     out.bias[i] = contacts.bias[e];
     if (e < m && states.state[e] == ContactState::kSlip) {
-      out.C.col(i) += contacts.friction[e] *
-                      (contacts.J.middleRows<2>(m + 2 * e).transpose() * states.direction.segment<2>(2 * e));
+      out.C.col(i) +=
+          contacts.friction[e] * (contacts.J.middleRows<2>(m + 2 * e).transpose() * states.direction.segment<2>(2 * e));
     }
   }
   return out;

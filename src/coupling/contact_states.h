@@ -15,14 +15,19 @@ struct ContactStates {
   Eigen::VectorXd direction;  // 2m: of friction over mu lambda, of contacts that slip
 };
 
-// From impulses that obey Coulomb's law.
-ContactStates contactStates(const ContactRows& contacts, const Eigen::VectorXd& r);
+// All contacts open.
+ContactStates openStates(const ContactRows& contacts);
+
+// From impulses r that obey Coulomb's law with the velocities w = D r + w0. Both decide: an impulse of round-off at a
+// contact that is opening does not press.
+ContactStates contactStates(const ContactRows& contacts, const Eigen::MatrixXd& D, const Eigen::VectorXd& w,
+                            const Eigen::VectorXd& r);
 
 // Unknown impulses y of the contacts that press: velocity rows R v, forces C y on the bodies.
 struct ContactBorder {
-  Eigen::MatrixXd R;     // k x 6n
-  Eigen::MatrixXd C;     // 6n x k
-  Eigen::VectorXd bias;  // k
+  Eigen::MatrixXd R;                // k x 6n
+  Eigen::MatrixXd C;                // 6n x k
+  Eigen::VectorXd bias;             // k
   std::vector<Eigen::Index> entry;  // place of y_i in the impulses r
 
   Eigen::Index count() const { return bias.size(); }

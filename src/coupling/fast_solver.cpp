@@ -22,13 +22,21 @@ constexpr double kStaleNumber = 1.5;
 constexpr double kSmallFactor = 0.01;
 constexpr double kSmallTolerance = 1e-9;
 // Contacts have settled when what they do to the bodies' velocities changes by less than the solve's tolerance times
-// this.
+// this, relative to the speeds at the contacts.
 constexpr double kLawFactor = 10.0;
+// The response is learnt from changes of speed larger than this times the tolerance.
+constexpr double kLearnable = 1000.0;
 constexpr double kLeastSpeed = 1e-10;  // m/s
 // Rounds after which the response of the bodies in contact is no longer estimated but solved for, and how closely.
 constexpr int kRoundsOnEstimate = 10;
 constexpr double kResponseTolerance = 1e-6;
+constexpr double kTightening = 0.3;  // of the tolerance in each of those rounds
+constexpr double kRoundOff = 1e-13;
 constexpr double kLeastCurvature = 1e-8;
+// Impulses of contacts that press are solved for next to those of the small system: moving away from them costs this
+// part of the contact's response. Without it what redundant contacts do one by one is as sensitive as
+// kContactCompliance is small.
+constexpr double kProximity = 1e-4;
 
 // Symmetric rank-one update of the response K so that it gives the change of twists dv that impulses dg were seen to
 // make; left alone where that would cost its definiteness.
@@ -118,7 +126,10 @@ struct FastSolver::Impl {
     M.bottomLeftCorner(k, n) = -border.R;
     M.topRightCorner(n, k) = -border.C;
     border_compliance.resize(k);
-    for (Eigen::Index i = 0; i < k; ++i) border_compliance[i] = compliance[border.entry[i]];
+    for (Eigen::Index i = 0; i < k; ++i) {
+      const double least = compliance[border.entry[i]];
+      border_compliance[i] = least * (1.0 + kProximity / kContactCompliance);
+    }
     M.bottomRightCorner(k, k).diagonal() = -border_compliance;
     if (M.size() > 0) small.compute(M);
   }
@@ -167,7 +178,7 @@ struct FastSolver::Impl {
   // Response of the twists of the bodies in contact to unit impulses, by one liquid solve each; false if one fails.
   bool solveResponse(const ContactRows& contacts, const CoupledOptions& options, CoupledReport& report,
                      Eigen::MatrixXd& K) {
-    setBorder(makeBorder(contacts, {std::vector<ContactState>(contacts.count(), ContactState::kOpen), {}}));
+    setBorder(makeBorder(contacts, openStates(contacts)));
     const std::size_t liquid = liquidSize();
     for (Eigen::Index i = 0; i < bodySize(); ++i) {
       if (contacts.J.col(i).isZero(0.0)) continue;
@@ -237,6 +248,7 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
   Eigen::MatrixXd K, D;
   Eigen::VectorXd last_push, last_twists;
   ContactStates states;
+  const ContactStates open = openStates(contacts);
   const auto velocities = [&](const std::vector<double>& from) {
     const Eigen::Map<const Eigen::VectorXd> v(from.data() + m.liquidSize(), m.bodySize());
     return Eigen::VectorXd(contacts.J * v.cwiseQuotient(m.scale) + contacts.bias);
@@ -247,16 +259,17 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
     K = inverse.asDiagonal() * m.S.ldlt().solve(Eigen::MatrixXd::Identity(n, n)) * inverse.asDiagonal();
     D = contactResponse(contacts, K, m.compliance);
     // One cycle on the whole residual says roughly how the bodies would move without contact.
-    m.setBorder(makeBorder(contacts, {std::vector<ContactState>(count, ContactState::kOpen), {}}));
+    m.setBorder(makeBorder(contacts, open));
     std::vector<double> residual(tail), z(tail);
     m.apply(x, residual);
     for (std::size_t i = 0; i < tail; ++i) residual[i] = rhs[i] - residual[i];
     m.precondition(residual, z);
     for (std::size_t i = 0; i < tail; ++i) z[i] += x[i];
     if (r.size() != 3 * count) r = Eigen::VectorXd::Zero(3 * count);
-    const FrictionReport friction = solveFrictionalContact(D, velocities(z), contacts.friction, small_tolerance, r);
+    const Eigen::VectorXd w0 = velocities(z);
+    const FrictionReport friction = solveFrictionalContact(D, w0, contacts.friction, small_tolerance, r);
     report.friction_iterations += friction.iterations;
-    states = contactStates(contacts, r);
+    states = contactStates(contacts, D, D * r + w0, r);
   }
 
   bool lawful = false;
@@ -266,26 +279,34 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
   for (int round = 0; round < options.maximum_rounds && !lawful; ++round) {
     if (round == kRoundsOnEstimate) {
       if (!m.solveResponse(contacts, options, report, K)) break;
-      last_push.resize(0);
       D = contactResponse(contacts, K, m.compliance);
     }
-    const ContactBorder border = makeBorder(contacts, states);
+    // On the exact response the impulses are right but for the shift and are given; what redundant contacts do one by
+    // one is too sensitive to be solved for over and over.
+    const bool given = round >= kRoundsOnEstimate;
+    const ContactBorder border = makeBorder(contacts, given ? open : states);
     m.setBorder(border);
     const Eigen::VectorXd start = borderUnknowns(border, r);
     rhs.resize(tail + border.count());
+    if (given) {
+      Eigen::Map<Eigen::VectorXd>(rhs.data() + m.liquidSize(), m.bodySize()) =
+          (gatherBodies(p, rhs_fields.bodies) + contacts.J.transpose() * r).cwiseQuotient(m.scale);
+    }
     x.resize(tail + border.count());
     for (Eigen::Index i = 0; i < border.count(); ++i) {
-      rhs[tail + i] = border.bias[i];
+      rhs[tail + i] = border.bias[i] - (m.border_compliance[i] - m.compliance[border.entry[i]]) * start[i];
       x[tail + i] = start[i];
     }
-    last = m.linearSolve(rhs, x, options.tolerance * rhs_norm, options, report);
+    // Given impulses are judged by the velocities that come of them, which the solve's error must not drown.
+    const double closer = given ? std::pow(kTightening, round - kRoundsOnEstimate + 1) : 1.0;
+    last = m.linearSolve(rhs, x, std::max(closer * options.tolerance, kRoundOff) * rhs_norm, options, report);
     if (!last.converged) {
       // The first guess of what the contacts do may be far off, and then hard to solve for: begin with none that press.
       if (from_open || border.count() == 0) break;
       from_open = true;
       x = guess;
       r.setZero();
-      states = contactStates(contacts, r);
+      states = open;
       continue;
     }
     if (count == 0) {
@@ -293,12 +314,15 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
       break;
     }
     const Eigen::VectorXd y = Eigen::Map<const Eigen::VectorXd>(x.data() + tail, border.count());
-    r = impulses(contacts, states, border, y);
+    if (!given) r = impulses(contacts, states, border, y);
     const Eigen::VectorXd w = velocities(x);
     const Eigen::VectorXd push = contacts.J.transpose() * r;
     const Eigen::VectorXd twists =
         Eigen::Map<const Eigen::VectorXd>(x.data() + m.liquidSize(), m.bodySize()).cwiseQuotient(m.scale);
-    if (last_push.size() > 0) {
+    // Below a certain change the solve's own error is all that there is to see.
+    const double seen = last_push.size() > 0 ? (contacts.J * (twists - last_twists)).cwiseAbs().maxCoeff() : 0.0;
+    const double speed = (w - contacts.bias).cwiseAbs().maxCoeff();
+    if (!given && seen > kLearnable * options.tolerance * speed) {
       learnResponse(push - last_push, twists - last_twists, K);
       const Eigen::VectorXd compliance = m.compliance;
       D = contactResponse(contacts, K, m.compliance);
@@ -311,14 +335,14 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
     // The small system, shifted so that it reproduces this solution exactly, says what the contacts do next. If that
     // moves no body, its impulses obey Coulomb's law here.
     Eigen::VectorXd next = r;
-    const FrictionReport friction =
-        solveFrictionalContact(D, w - D * r + m.compliance.cwiseProduct(r), contacts.friction, small_tolerance, next);
+    const Eigen::VectorXd w0 = w - D * r + m.compliance.cwiseProduct(r);
+    const FrictionReport friction = solveFrictionalContact(D, w0, contacts.friction, small_tolerance, next);
     report.friction_iterations += friction.iterations;
     const double change = (D * (next - r)).cwiseAbs().maxCoeff();
-    lawful =
-        friction.solved && change <= kLawFactor * options.tolerance * (D * next).cwiseAbs().maxCoeff() + kLeastSpeed;
+    const double scale = std::max((D * next).cwiseAbs().maxCoeff(), speed);
+    lawful = friction.solved && change <= kLawFactor * options.tolerance * scale + kLeastSpeed;
     r = next;
-    states = contactStates(contacts, next);
+    states = contactStates(contacts, D, D * next + w0, next);
   }
 
   report.residual = rhs_norm > 0.0 ? last.residual / rhs_norm : 0.0;

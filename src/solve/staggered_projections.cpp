@@ -97,8 +97,9 @@ bool alternate(const Eigen::MatrixXd& D, const Eigen::VectorXd& w0, const Eigen:
     if (!frictionless) {
       Eigen::VectorXd f = r.tail(2 * m);
       // Its residual counts, not whether these sweeps have finished.
-      static_cast<void>(solveDiscQp(D.bottomRightCorner(2 * m, 2 * m), w0.tail(2 * m) + D.bottomLeftCorner(2 * m, m) * lambda,
-                      mu.cwiseProduct(lambda), 1e-14, kSweepsPerAlternation, f));
+      static_cast<void>(solveDiscQp(D.bottomRightCorner(2 * m, 2 * m),
+                                    w0.tail(2 * m) + D.bottomLeftCorner(2 * m, m) * lambda, mu.cwiseProduct(lambda),
+                                    1e-14, kSweepsPerAlternation, f));
       r.tail(2 * m) = f;
     }
     report.residual = coulombResidual(D, w0, mu, r);
@@ -118,8 +119,9 @@ bool alternate(const Eigen::MatrixXd& D, const Eigen::VectorXd& w0, const Eigen:
   return false;
 }
 
-// Impulse of a contact that slips with friction in direction t (angle): w_n = 0. Returns how far the slip turns from -t,
-// positive one way, negative the other; NaN where friction in this direction could not be borne or does not oppose it.
+// Impulse of a contact that slips with friction in direction t (angle): w_n = 0. Returns how far the slip turns from
+// -t, positive one way, negative the other; NaN where friction in this direction could not be borne or does not oppose
+// it.
 double slipAngle(const Eigen::Matrix3d& B, const Eigen::Vector3d& q, double mu, double angle, Eigen::Vector3d& r) {
   const Eigen::Vector2d t(std::cos(angle), std::sin(angle));
   const double resistance = B(0, 0) + mu * B.block<1, 2>(0, 1).dot(t);
@@ -132,7 +134,8 @@ double slipAngle(const Eigen::Matrix3d& B, const Eigen::Vector3d& q, double mu, 
 }
 
 // One contact with the others given, w = B r + q: open, stuck or slipping in the direction found by a search over all.
-Eigen::Vector3d solveOneContact(const Eigen::Matrix3d& B, const Eigen::Vector3d& q, double mu, const Eigen::Vector3d& old) {
+Eigen::Vector3d solveOneContact(const Eigen::Matrix3d& B, const Eigen::Vector3d& q, double mu,
+                                const Eigen::Vector3d& old) {
   if (q[0] >= 0.0) return Eigen::Vector3d::Zero();
   const Eigen::Vector3d stuck = -B.ldlt().solve(q);
   if (stuck.allFinite() && stuck[0] >= 0.0 && stuck.tail<2>().norm() <= mu * stuck[0]) return stuck;
@@ -218,8 +221,13 @@ FrictionReport solveFrictionalContact(const Eigen::MatrixXd& D, const Eigen::Vec
   }
   const double scale = std::max(largest(w0), 1e-300);
   const double goal = tolerance * scale;
+  // A start that is nearly right, such as the last step's impulses, is only polished: where the law has more than one
+  // answer, it stays with the nearest.
+  newton(D, w0, mu, goal, r, report);
+  report.residual = coulombResidual(D, w0, mu, r);
+  report.solved = report.residual <= goal;
   const Eigen::VectorXd start = r;
-  report.solved = alternate(D, w0, mu, goal, r, report);
+  if (!report.solved) report.solved = alternate(D, w0, mu, goal, r, report);
   if (!report.solved) {
     r = start;
     report.solved = sweep(D, w0, mu, goal, r, report);
