@@ -17,7 +17,7 @@ constexpr double kSpeed = 0.5;              // m/s, at the start; St = rho_s U D
 constexpr double kRestitution = 0.97;       // dry, steel on glass
 constexpr double kStart = 0.5 * kDiameter;  // gap
 
-// Largest speed of rebound over the speed of approach a tenth of a diameter from the floor, over the dry restitution.
+// Largest speed of rebound over the speed of approach a quarter of a diameter from the floor, over the dry restitution.
 double rebound(double stokes, const Numerics& numerics, Meter& meter) {
   Scene scene;
   scene.name = "rebound";
@@ -39,7 +39,7 @@ double rebound(double stokes, const Numerics& numerics, Meter& meter) {
   meter.advance(simulation, 0.04, [&](const StepReport&) {
     const BodyState ball = simulation.bodyStates()[0];
     const double gap = ball.X_WB.translation()[2] - 0.5 * kDiameter;
-    if (up == 0.0 && gap > 0.1 * kDiameter) approach = -ball.velocity[2];
+    if (ball.velocity[2] < 0.0 && up == 0.0 && gap > 0.25 * kDiameter) approach = -ball.velocity[2];
     up = std::max(up, ball.velocity[2]);
   });
   return up / approach / kRestitution;
