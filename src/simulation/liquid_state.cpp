@@ -19,7 +19,8 @@ MacGrid makeGrid(const TankDescription& tank, const LiquidDescription& liquid) {
 }
 
 void completeVelocity(const MacGrid& grid, const StepProblem& problem, const SolidFractions& solids,
-                      const std::vector<RigidBody>& bodies, int layers, bool no_slip, FaceField<double>& velocity,
+                      const std::vector<RigidBody>& bodies, int layers, bool no_slip,
+                      const std::array<std::vector<std::uint8_t>, 3>* usable, FaceField<double>& velocity,
                       std::array<std::vector<std::uint8_t>, 3>& known) {
   const Lattice& l = grid.lattice;
   for (int a = 0; a < 3; ++a) {
@@ -27,7 +28,7 @@ void completeVelocity(const MacGrid& grid, const StepProblem& problem, const Sol
     forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
       for (int i = 0; i < l.faceEnd(0); ++i) {
         const auto f = row + i;
-        if (problem.isResolved(a, f)) {
+        if (problem.isResolved(a, f) && (usable == nullptr || (*usable)[a][f])) {
           known[a][f] = 1;
           continue;
         }
