@@ -13,6 +13,8 @@ double approach(const std::vector<RigidBody>& bodies, const Contact& c) {
   return rate;
 }
 
+}  // namespace
+
 std::vector<char> closingBodies(const std::vector<RigidBody>& bodies, const std::vector<Contact>& contacts, double dt,
                                 double gap_tolerance) {
   std::vector<char> closing(bodies.size(), 0);
@@ -33,6 +35,8 @@ std::vector<char> closingBodies(const std::vector<RigidBody>& bodies, const std:
   return closing;
 }
 
+namespace {
+
 // Where a point of the body goes.
 Vector3d carriedPoint(const RigidBody& from, const RigidBody& to, const Vector3d& point) {
   return to.p_WBcm + to.q_WB * (from.q_WB.conjugate() * (point - from.p_WBcm));
@@ -51,7 +55,6 @@ BodyPlan planEuler(const std::vector<RigidBody>& bodies, const Vector3d& gravity
                    double time, double dt) {
   BodyPlan plan;
   plan.bodies = bodies;
-  plan.closing.assign(bodies.size(), 0);
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const RigidBody& body = bodies[b];
     plan.free_twists.push_back(body.motion == BodyMotion::kFree         ? freeTwist(body, gravity, wrenches[b], dt)
@@ -63,11 +66,12 @@ BodyPlan planEuler(const std::vector<RigidBody>& bodies, const Vector3d& gravity
 
 BodyPlan planSecondOrder(const std::vector<RigidBody>& bodies, const Vector3d& gravity,
                          const std::vector<Wrench>& wrenches, const BodyPast& past, double time,
-                         const StepWeights& weights, double gap_tolerance, std::vector<Contact>& contacts) {
+                         const StepWeights& weights, const std::vector<char>& closing,
+                         std::vector<Contact>& contacts) {
   const double dt = weights.dt;
   BodyPlan plan;
   plan.bodies = bodies;
-  plan.closing = closingBodies(bodies, contacts, dt, gap_tolerance);
+  plan.closing = closing;
   plan.free_twists.assign(bodies.size(), Vector6d::Zero());
   plan.motion.resize(bodies.size());
   for (std::size_t b = 0; b < bodies.size(); ++b) {

@@ -6,6 +6,11 @@
 #include "fluid/advection.h"
 
 namespace monolith {
+namespace {
+
+constexpr double kLeastSlope = 0.25;  // of the level set, per cell
+
+}  // namespace
 
 MacGrid makeGrid(const TankDescription& tank, const LiquidDescription& liquid) {
   const bool dry = liquid.fill_level <= 0.0 && liquid.boxes.empty();
@@ -113,8 +118,11 @@ std::vector<SurfacePoint> sampleSurface(const MacGrid& grid, const FreeSurface& 
         const auto c = l.index(i, j, k);
         if (std::abs(d[c]) > 1.0 || cell_distance[c] < -0.5) continue;
         const Eigen::Vector3d normal = surface.normal(c);
-        // The foot on the surface, if it lies in this cell's share: one point for a cell that the surface crosses.
-        const Eigen::Vector3d shift = -d[c] * normal;
+        // The foot on the surface, if it lies in this cell's share: one point for a cell that the surface crosses. The
+        // level set is a distance only in the mean: its slope there tells how far.
+        Eigen::Vector3d slope;
+        for (int a = 0; a < 3; ++a) slope[a] = 0.5 * (d[c + l.stride[a]] - d[c - l.stride[a]]);
+        const Eigen::Vector3d shift = -d[c] / std::max(slope.norm(), kLeastSlope) * normal;
         if (shift.cwiseAbs().maxCoeff() > 0.5 + 1e-9) continue;
         const Eigen::Vector3d cells = Eigen::Vector3d(i + 0.5, j + 0.5, k + 0.5) + shift;
         SurfacePoint point;

@@ -29,6 +29,8 @@ constexpr double kClosingTolerance = 1e-3;  // of a cell: a gap that closes by l
 // Steps of backward Euler: one in which the velocity jumps, and one for the next to continue.
 constexpr int kStepsAfterSet = 2;
 constexpr int kStepsAfterImpact = 1;
+// Parts of the very first step: the two of first order are short enough not to be seen in what follows.
+constexpr std::array<double, 3> kFirstParts = {0.125, 0.125, 0.25};
 
 class StageClock {
  public:
@@ -53,6 +55,7 @@ struct State {
   double liquid_speed = 0.0;                // m/s, no component of the velocity is larger
   double last_dt = 0.0;                     // s, of the last sub-step
   int euler_steps = kStepsAfterSet;         // sub-steps of backward Euler that are due
+  std::size_t substeps = 0;
   bool started = false;
   double typical_viscosity = 0.0;  // Pa s, of a non-Newtonian liquid
 };
@@ -85,8 +88,8 @@ struct Simulation::Impl {
   bool secondOrder() const { return scene.solver.time_stepping == TimeStepping::kBdf2; }
   StepWeights weights(double dt) const;
   double contactReach(double dt) const;
-  BodyPlan planBodies(const StepWeights& w, std::vector<Contact>& contacts) const;
-  void prepareSolve(double dt);
+  BodyPlan planBodies(const StepWeights& w, const std::vector<char>& closing, std::vector<Contact>& contacts) const;
+  void prepareSolve(const StepWeights& w);
   void advectLiquid(const StepWeights& w, FaceField<double>& free_velocity);
   CoupledReport solveWithLiquid(const StepWeights& w, const std::vector<Contact>& contacts, StepReport& report);
   void takeMeans(const StepWeights& w, const std::vector<Wrench>& liquid_before);
@@ -168,31 +171,27 @@ double Simulation::Impl::contactReach(double dt) const {
   return std::min(2.0 * reach * dt, scene.tank.size.norm()) + 0.05 * grid.h;
 }
 
-BodyPlan Simulation::Impl::planBodies(const StepWeights& w, std::vector<Contact>& contacts) const {
-  if (!secondOrder()) return planEuler(state.bodies, scene.gravity, wrenches, state.time, w.dt);
-  const std::size_t n = state.bodies.size();
-  BodyPast past{state.body_acceleration, state.coupled.liquid, state.coupled.contact};
-  if (w.carry == 0.0) {
-    past = {std::vector<Vector6d>(n, Vector6d::Zero()), std::vector<Wrench>(n), std::vector<Wrench>(n)};
-  }
-  return planSecondOrder(state.bodies, scene.gravity, wrenches, past, state.time, w, kClosingTolerance * grid.h,
-                         contacts);
+BodyPlan Simulation::Impl::planBodies(const StepWeights& w, const std::vector<char>& closing,
+                                      std::vector<Contact>& contacts) const {
+  if (w.order == 1) return planEuler(state.bodies, scene.gravity, wrenches, state.time, w.dt);
+  const BodyPast past{state.body_acceleration, state.coupled.liquid, state.coupled.contact};
+  return planSecondOrder(state.bodies, scene.gravity, wrenches, past, state.time, w, closing, contacts);
 }
 
 // Geometry of the solve.
-void Simulation::Impl::prepareSolve(double dt) {
+void Simulation::Impl::prepareSolve(const StepWeights& w) {
   step_surface = state.surface;
-  if (!secondOrder()) {
+  if (w.order == 1) {
     step_solids = solids;
     return;
   }
   sampler.sample(plan.bodies, step_solids);
-  step_surface[0].advect(state.coupled.velocity, dt, state.liquid_speed);
+  step_surface[0].advect(state.coupled.velocity, w.dt, state.liquid_speed);
   step_surface[0].extendIntoSolids(step_solids.cell_distance);
 }
 
 void Simulation::Impl::advectLiquid(const StepWeights& w, FaceField<double>& free_velocity) {
-  if (w.carry > 0.0) {
+  if (w.order == 2 && hasLiquid()) {
     FaceField<double> gained;
     advectAccelerated(grid, state.coupled.velocity, state.acceleration, state.known, w.dt, carried, gained);
     free_velocity = carried;
@@ -219,7 +218,7 @@ CoupledReport Simulation::Impl::solveWithLiquid(const StepWeights& w, const std:
   }
   {
     const StageClock clock(step.times.geometry);
-    prepareSolve(w.dt);
+    prepareSolve(w);
     const auto& distance = step_surface[0].distance();
     if (nonNewtonian()) {
       system.assembleVariable(step_solids, plan.bodies, distance, liquid.density, state.typical_viscosity, w.implicit);
@@ -289,6 +288,8 @@ void Simulation::Impl::moveLiquid(const StepWeights& w, const FaceField<double>&
     }
     std::array<std::vector<std::uint8_t>, 3> known;
     completeVelocity(grid, system.problem(), step_solids, moving, layers, noSlip(), &known_before, acceleration, known);
+  }
+  if (w.order == 2) {
     FaceField<double> mean = velocity_before;
     for (int a = 0; a < 3; ++a) {
       for (std::size_t i = 0; i < grid.lattice.size; ++i) mean[a][i] = 0.5 * (mean[a][i] + state.coupled.velocity[a][i]);
@@ -299,23 +300,25 @@ void Simulation::Impl::moveLiquid(const StepWeights& w, const FaceField<double>&
   }
   state.liquid_speed = step.maximum_speed;
   prepareGeometry();
-  step.volume_correction += state.surface[0].correctVolume(target_volume, solids.cell_fluid);
+  if (!getenv("NOVC")) step.volume_correction += state.surface[0].correctVolume(target_volume, solids.cell_fluid);
 }
 
 bool Simulation::Impl::substep(double dt, StepReport& step) {
   const StepWeights w = weights(dt);
   std::vector<Contact> contacts;
+  std::vector<char> closing;
   {
     const StageClock clock(step.times.contact);
     contacts = detector->detect(state.bodies, contactReach(dt));
+    closing = closingBodies(state.bodies, contacts, dt, kClosingTolerance * grid.h);
     for (Contact& contact : contacts) {
       step.penetration = std::max(step.penetration, -contact.gap);
       contact.gap *= w.implicit / w.dt;  // the solve divides it by what it takes for the step
     }
-    plan = planBodies(w, contacts);
+    plan = planBodies(w, closing, contacts);
   }
   const std::vector<Wrench> liquid_before = state.coupled.liquid;
-  const FaceField<double> velocity_before = secondOrder() ? state.coupled.velocity : FaceField<double>();
+  const FaceField<double> velocity_before = w.order == 2 ? state.coupled.velocity : FaceField<double>();
   const CoupledReport solved = solveWithLiquid(w, contacts, step);
   step.iterations += solved.iterations;
   step.liquid_solves += solved.solves;
@@ -335,7 +338,7 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
   step.model.viscosity = hasLiquid() && noSlip();
   step.model.non_newtonian = nonNewtonian();
   step.model.free_surface = hasLiquid() && !state.surface[0].full();
-  step.model.time_order = w.carry > 0.0 ? 2 : 1;
+  step.model.time_order = w.order;
   step.model.coupled_bodies = system.coupledBodies();
   step.model.contacts = static_cast<int>(contacts.size());
   step.model.friction = std::any_of(contacts.begin(), contacts.end(), [&](const Contact& contact) {
@@ -343,14 +346,15 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
   });
 
   takeMeans(w, liquid_before);
-  if (secondOrder()) {
+  if (w.order == 2) {
     finishSecondOrder(plan, state.coupled.twists, dt, state.bodies);
   } else {
     finishEuler(state.coupled.twists, dt, state.bodies);
   }
-  const bool impact = std::any_of(plan.closing.begin(), plan.closing.end(), [](char closing) { return closing != 0; });
+  const bool impact = std::find(closing.begin(), closing.end(), 1) != closing.end();
   state.euler_steps = impact ? kStepsAfterImpact : std::max(0, state.euler_steps - 1);
   state.last_dt = dt;
+  ++state.substeps;
   if (hasLiquid()) {
     const StageClock clock(step.times.surface);
     moveLiquid(w, velocity_before, step);
@@ -397,7 +401,10 @@ StepReport Simulation::step() {
       const double speed = std::max(m.bodySpeed(), step.substeps > 0 ? step.maximum_speed : m.report.maximum_speed);
       const double wanted = std::ceil(left * speed / (m.scene.solver.cfl * m.grid.h) - 1e-9);
       const double count = std::clamp(wanted, 1.0, static_cast<double>(kLargestSubsteps));
-      const double dt = left / count;
+      double dt = left / count;
+      if (m.secondOrder() && m.state.substeps < kFirstParts.size()) {
+        dt = std::min(dt, kFirstParts[m.state.substeps] * m.scene.time_step);
+      }
       good = m.substep(dt, step);
       ++step.substeps;
       left -= dt;

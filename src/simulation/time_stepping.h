@@ -12,7 +12,7 @@
 // wrench on the body is carried over, which therefore is reported as the mean over the step: with it and with that of
 // the contacts m (v^(n+1) - v^n)/dt = sum of wrenches + m g holds exactly.
 //
-// Where bodies and surface are in the solve: BDF2 at x^n + dt u^n, corrected to x^n + dt (u^n + u^(n+1))/2 after it.
+// Where bodies and surface are in the solve: with BDF2 at x^n + dt u^n, corrected to x^n + dt (u^n + u^(n+1))/2 after it.
 // For a wave or a floating body this pair is neutrally stable up to omega dt = 2, as is backward Euler's x^n in the solve
 // and x^n + dt u^(n+1) after it.
 //
@@ -22,6 +22,7 @@
 namespace monolith {
 
 struct StepWeights {
+  int order = 1;
   double dt = 0.0;        // s, the step
   double implicit = 0.0;  // s, b dt: what the solve takes for the step
   double carry = 0.0;     // 1 - b
