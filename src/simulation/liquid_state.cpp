@@ -10,6 +10,43 @@ namespace {
 
 constexpr double kLeastSlope = 0.25;  // of the level set, per cell
 
+// Faces in air next to known ones go on with the slope that the velocity has in the liquid, mean over the directions that
+// tell one: held constant instead, velocity at the surface would be that of up to half a cell below it.
+void continueIntoAir(const Lattice& l, const SolidFractions& solids, FaceField<double>& velocity,
+                     std::array<std::vector<std::uint8_t>, 3>& known) {
+  for (int a = 0; a < 3; ++a) {
+    std::vector<double>& u = velocity[a];
+    fillHalo(l, u);
+    fillHalo(l, known[a]);
+    const std::vector<std::uint8_t> before = known[a];
+    forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
+      const int at[3] = {0, j, k};
+      for (int i = 0; i < l.faceEnd(0); ++i) {
+        const auto f = row + i;
+        if (before[f] || !(solids.distance[a][f] > 0.0)) continue;
+        double sum = 0.0;
+        int count = 0;
+        for (int b = 0; b < 3; ++b) {
+          const int position = b == 0 ? i : at[b];
+          for (const int step : {-1, 1}) {
+            const int last = position + 2 * step;
+            const bool inside = last >= 0 && last < (b == a ? l.faceEnd(b) : l.n[b]);
+            if (!inside && !l.periodic[b]) continue;
+            const auto near = f + step * l.stride[b];
+            const auto far = near + step * l.stride[b] - (inside ? 0 : step * l.n[b] * l.stride[b]);
+            if (!before[near] || !before[far]) continue;
+            sum += 2.0 * u[near] - u[far];
+            ++count;
+          }
+        }
+        if (count == 0) continue;
+        u[f] = sum / count;
+        known[a][f] = 1;
+      }
+    });
+  }
+}
+
 }  // namespace
 
 MacGrid makeGrid(const TankDescription& tank, const LiquidDescription& liquid) {
@@ -50,6 +87,7 @@ void completeVelocity(const MacGrid& grid, const StepProblem& problem, const Sol
       }
     });
   }
+  continueIntoAir(l, solids, velocity, known);
   extrapolateVelocity(l, layers, no_slip, known, velocity);
 }
 

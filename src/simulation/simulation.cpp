@@ -300,7 +300,7 @@ void Simulation::Impl::moveLiquid(const StepWeights& w, const FaceField<double>&
   }
   state.liquid_speed = step.maximum_speed;
   prepareGeometry();
-  if (!getenv("NOVC")) step.volume_correction += state.surface[0].correctVolume(target_volume, solids.cell_fluid);
+  step.volume_correction += state.surface[0].correctVolume(target_volume, solids.cell_fluid);
 }
 
 bool Simulation::Impl::substep(double dt, StepReport& step) {
