@@ -96,6 +96,32 @@ void advectVelocity(const MacGrid& grid, const FaceField<double>& velocity,
   }
 }
 
+void advectAccelerated(const MacGrid& grid, const FaceField<double>& velocity, const FaceField<double>& acceleration,
+                       const std::array<std::vector<std::uint8_t>, 3>& known, double dt, FaceField<double>& moved,
+                       FaceField<double>& gained) {
+  const Lattice& l = grid.lattice;
+  FaceField<double> mean = velocity;
+  for (int a = 0; a < 3; ++a) {
+    for (std::size_t i = 0; i < l.size; ++i) mean[a][i] += 0.5 * dt * acceleration[a][i];
+  }
+  const double scale = dt / grid.h;
+  for (int a = 0; a < 3; ++a) {
+    moved[a].assign(l.size, 0.0);
+    gained[a].assign(l.size, 0.0);
+    const Eigen::Vector3d offset = nodeOffset(a);
+    forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
+      for (int i = 0; i < l.faceEnd(0); ++i) {
+        if (!known[a][row + i]) continue;
+        const Eigen::Vector3d x = Eigen::Vector3d(i, j, k) + offset;
+        const Eigen::Vector3d near = x - scale * velocityAt(l, mean, x);
+        const Eigen::Vector3d node = x - scale * velocityAt(l, mean, near) - offset;
+        moved[a][row + i] = sampleCubic(l, velocity[a], node, true);
+        gained[a][row + i] = sampleLinear(l, acceleration[a], node);
+      }
+    });
+  }
+}
+
 void advectCells(const MacGrid& grid, const FaceField<double>& velocity, const std::vector<double>& field, double dt,
                  std::vector<double>& moved) {
   const Lattice& l = grid.lattice;

@@ -19,6 +19,12 @@ void extrapolateVelocity(const Lattice& lattice, int layers, bool no_slip,
 void advectVelocity(const MacGrid& grid, const FaceField<double>& velocity,
                     const std::array<std::vector<std::uint8_t>, 3>& known, double dt, FaceField<double>& moved);
 
+// The same with trajectories of second order in time: with the acceleration a of the liquid's particles they are
+// x = x_d + dt u(x_d) + dt^2/2 a(x_d). moved: u(x_d); gained: a(x_d), trilinear.
+void advectAccelerated(const MacGrid& grid, const FaceField<double>& velocity, const FaceField<double>& acceleration,
+                       const std::array<std::vector<std::uint8_t>, 3>& known, double dt, FaceField<double>& moved,
+                       FaceField<double>& gained);
+
 // A cell-centred field moved by the velocity over dt. Halos must be filled.
 void advectCells(const MacGrid& grid, const FaceField<double>& velocity, const std::vector<double>& field, double dt,
                  std::vector<double>& moved);

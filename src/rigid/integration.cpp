@@ -27,6 +27,30 @@ void advancePose(RigidBody& body, double dt) {
   body.q_WB = (exponential(dt * body.twist.tail<3>()) * body.q_WB).normalized();
 }
 
+FreeMotion freeMotion(const RigidBody& body, const Vector3d& gravity, const Wrench& held, const Vector3d& expected,
+                      double dt) {
+  FreeMotion out;
+  out.twist.head<3>() = body.twist.head<3>() + dt * (gravity + held.force / body.mass);
+  // The torques as the body sees them half-way.
+  const Vector3d omega = body.twist.tail<3>();
+  const Quaterniond q_WM = exponential(0.5 * dt * omega) * body.q_WB;
+  const Vector3d before_B = body.q_WB.conjugate() * omega;
+  const Vector3d after_B = gyroscopicStep(body.inertia_Bcm, before_B, q_WM.conjugate() * (held.torque + expected), dt);
+  out.q_WB = (body.q_WB * exponential(0.5 * dt * (before_B + after_B))).normalized();
+  out.angular_velocity = out.q_WB * after_B;
+  // Angular momentum, so with the inertia of the end.
+  const Vector3d added_B = body.inertia_Bcm.ldlt().solve(out.q_WB.conjugate() * expected);
+  out.twist.tail<3>() = out.angular_velocity - dt * (out.q_WB * added_B);
+  return out;
+}
+
+void finishMotion(const FreeMotion& motion, const Vector6d& twist, double dt, RigidBody& body) {
+  body.p_WBcm += 0.5 * dt * (body.twist.head<3>() + twist.head<3>());
+  const Vector3d turn = 0.5 * dt * (twist.tail<3>() - motion.angular_velocity);
+  body.q_WB = (exponential(turn) * motion.q_WB).normalized();
+  body.twist = twist;
+}
+
 Vector6d prescribedTwist(const RigidBody& body, double time) {
   const PrescribedMotion& motion = body.prescribed;
   const double rate = 2.0 * M_PI * motion.frequency;

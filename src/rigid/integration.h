@@ -20,6 +20,21 @@ Vector6d freeTwist(const RigidBody& body, const Eigen::Vector3d& gravity, const 
 // prescribed to move in place stays.
 void advancePose(RigidBody& body, double dt);
 
+// A free body over a step of second order (simulation/time_stepping.h), but for what the solve adds.
+struct FreeMotion {
+  Vector6d twist = Vector6d::Zero();                                // v*
+  Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();         // at the end, if `expected` is what the solve adds
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();       // likewise
+};
+
+// Momentum and angular momentum are changed by gravity and `held` over dt. `expected`: torque that the solve is going to
+// add, an estimate that only the gyroscopic term and the orientation follow. Torque-free, energy is kept at any spin.
+FreeMotion freeMotion(const RigidBody& body, const Eigen::Vector3d& gravity, const Wrench& held,
+                      const Eigen::Vector3d& expected, double dt);
+
+// Gives the body the twist that was solved for, and moves it by the mean of that and the one it had (trapezoidal rule).
+void finishMotion(const FreeMotion& motion, const Vector6d& twist, double dt, RigidBody& body);
+
 // Twist of the centre of mass that a prescribed body has at time t.
 Vector6d prescribedTwist(const RigidBody& body, double time);
 

@@ -92,10 +92,14 @@ enum class CouplingName { kUnified, kIterative };
 // How solids bound the liquid (DESIGN 1.4): fitted gradients, or the paper's volume fractions.
 enum class Discretisation { kFitted, kFractions };
 
+// How a step approximates time (simulation/time_stepping.h): first or second order, the same solve.
+enum class TimeStepping { kBackwardEuler, kBdf2 };
+
 struct SolverDescription {
   SolverName name = SolverName::kFast;
   CouplingName coupling = CouplingName::kUnified;
   Discretisation discretisation = Discretisation::kFitted;
+  TimeStepping time_stepping = TimeStepping::kBdf2;
   double tolerance = 1e-5;        // relative residual of the coupled solve
   int maximum_iterations = 200;   // of one coupled solve
   int threads = 0;                // 0: as many as the machine has; never changes a result

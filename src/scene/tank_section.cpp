@@ -112,7 +112,9 @@ void readLiquid(const YAML::Node& node, const TankDescription& tank, bool tank_u
 }
 
 void readSolver(const YAML::Node& node, SolverDescription& solver, Violations& violations) {
-  const YamlMap map(node, "solver", {"name", "coupling", "discretisation", "tolerance", "maximum_iterations", "threads", "cfl"},
+  const YamlMap map(node, "solver",
+                    {"name", "coupling", "discretisation", "time_stepping", "tolerance", "maximum_iterations", "threads",
+                     "cfl"},
                     violations);
   const std::string name = map.readWord("name", "fast", {"fast", "direct", "reference"});
   solver.name = name == "direct"      ? SolverName::kDirect
@@ -123,6 +125,9 @@ void readSolver(const YAML::Node& node, SolverDescription& solver, Violations& v
   }
   if (map.readWord("discretisation", "fitted", {"fitted", "fractions"}) == "fractions") {
     solver.discretisation = Discretisation::kFractions;
+  }
+  if (map.readWord("time_stepping", "bdf2", {"backward_euler", "bdf2"}) == "backward_euler") {
+    solver.time_stepping = TimeStepping::kBackwardEuler;
   }
   map.read("tolerance", solver.tolerance, Range::kPositive);
   if (solver.tolerance >= 1.0) map.fail("tolerance", "a relative residual below 1");

@@ -6,6 +6,48 @@
 #include "fluid/advection.h"
 
 namespace monolith {
+namespace {
+
+constexpr double kLeastSlope = 0.25;  // of the level set, per cell
+
+// Faces in air next to known ones go on with the slope that the velocity has in the liquid, mean over the directions that
+// tell one: held constant instead, velocity at the surface would be that of up to half a cell below it.
+void continueIntoAir(const Lattice& l, const SolidFractions& solids, FaceField<double>& velocity,
+                     std::array<std::vector<std::uint8_t>, 3>& known) {
+  for (int a = 0; a < 3; ++a) {
+    std::vector<double>& u = velocity[a];
+    fillHalo(l, u);
+    fillHalo(l, known[a]);
+    const std::vector<std::uint8_t> before = known[a];
+    forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
+      const int at[3] = {0, j, k};
+      for (int i = 0; i < l.faceEnd(0); ++i) {
+        const auto f = row + i;
+        if (before[f] || !(solids.distance[a][f] > 0.0)) continue;
+        double sum = 0.0;
+        int count = 0;
+        for (int b = 0; b < 3; ++b) {
+          const int position = b == 0 ? i : at[b];
+          for (const int step : {-1, 1}) {
+            const int last = position + 2 * step;
+            const bool inside = last >= 0 && last < (b == a ? l.faceEnd(b) : l.n[b]);
+            if (!inside && !l.periodic[b]) continue;
+            const auto near = f + step * l.stride[b];
+            const auto far = near + step * l.stride[b] - (inside ? 0 : step * l.n[b] * l.stride[b]);
+            if (!before[near] || !before[far]) continue;
+            sum += 2.0 * u[near] - u[far];
+            ++count;
+          }
+        }
+        if (count == 0) continue;
+        u[f] = sum / count;
+        known[a][f] = 1;
+      }
+    });
+  }
+}
+
+}  // namespace
 
 MacGrid makeGrid(const TankDescription& tank, const LiquidDescription& liquid) {
   const bool dry = liquid.fill_level <= 0.0 && liquid.boxes.empty();
@@ -19,7 +61,8 @@ MacGrid makeGrid(const TankDescription& tank, const LiquidDescription& liquid) {
 }
 
 void completeVelocity(const MacGrid& grid, const StepProblem& problem, const SolidFractions& solids,
-                      const std::vector<RigidBody>& bodies, int layers, bool no_slip, FaceField<double>& velocity,
+                      const std::vector<RigidBody>& bodies, int layers, bool no_slip,
+                      const std::array<std::vector<std::uint8_t>, 3>* usable, FaceField<double>& velocity,
                       std::array<std::vector<std::uint8_t>, 3>& known) {
   const Lattice& l = grid.lattice;
   for (int a = 0; a < 3; ++a) {
@@ -27,7 +70,7 @@ void completeVelocity(const MacGrid& grid, const StepProblem& problem, const Sol
     forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
       for (int i = 0; i < l.faceEnd(0); ++i) {
         const auto f = row + i;
-        if (problem.isResolved(a, f)) {
+        if (problem.isResolved(a, f) && (usable == nullptr || (*usable)[a][f])) {
           known[a][f] = 1;
           continue;
         }
@@ -44,6 +87,7 @@ void completeVelocity(const MacGrid& grid, const StepProblem& problem, const Sol
       }
     });
   }
+  continueIntoAir(l, solids, velocity, known);
   extrapolateVelocity(l, layers, no_slip, known, velocity);
 }
 
@@ -112,8 +156,11 @@ std::vector<SurfacePoint> sampleSurface(const MacGrid& grid, const FreeSurface& 
         const auto c = l.index(i, j, k);
         if (std::abs(d[c]) > 1.0 || cell_distance[c] < -0.5) continue;
         const Eigen::Vector3d normal = surface.normal(c);
-        // The foot on the surface, if it lies in this cell's share: one point for a cell that the surface crosses.
-        const Eigen::Vector3d shift = -d[c] * normal;
+        // The foot on the surface, if it lies in this cell's share: one point for a cell that the surface crosses. The
+        // level set is a distance only in the mean: its slope there tells how far.
+        Eigen::Vector3d slope;
+        for (int a = 0; a < 3; ++a) slope[a] = 0.5 * (d[c + l.stride[a]] - d[c - l.stride[a]]);
+        const Eigen::Vector3d shift = -d[c] / std::max(slope.norm(), kLeastSlope) * normal;
         if (shift.cwiseAbs().maxCoeff() > 0.5 + 1e-9) continue;
         const Eigen::Vector3d cells = Eigen::Vector3d(i + 0.5, j + 0.5, k + 0.5) + shift;
         SurfacePoint point;

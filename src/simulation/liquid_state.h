@@ -14,9 +14,10 @@ namespace monolith {
 MacGrid makeGrid(const TankDescription& tank, const LiquidDescription& liquid);
 
 // Marks the faces whose velocity is known, gives faces inside bodies the bodies' velocity where it sticks to them, and
-// spreads the rest into solids and air.
+// spreads the rest into solids and air. `usable`: faces that may be known at all; nullptr: all.
 void completeVelocity(const MacGrid& grid, const StepProblem& problem, const SolidFractions& solids,
-                      const std::vector<RigidBody>& bodies, int layers, bool no_slip, FaceField<double>& velocity,
+                      const std::vector<RigidBody>& bodies, int layers, bool no_slip,
+                      const std::array<std::vector<std::uint8_t>, 3>* usable, FaceField<double>& velocity,
                       std::array<std::vector<std::uint8_t>, 3>& known);
 
 // Pressure of the liquid at rest: where it is exact the first solve has nothing to do.

@@ -25,6 +25,7 @@ struct ModelChoice {       // what the last sub-step modelled, chosen from the s
   bool viscosity = false;
   bool non_newtonian = false;
   bool free_surface = false;
+  int time_order = 1;      // of its time stepping; 1 after an impact or a start also where 2 was asked for
   int coupled_bodies = 0;  // bodies with at least one coupling row
   int contacts = 0;
   bool friction = false;   // at least one of the contacts has a friction coefficient

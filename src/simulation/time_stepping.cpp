@@ -1,0 +1,18 @@
+#include "simulation/time_stepping.h"
+
+namespace monolith {
+namespace {
+
+constexpr double kLargestRatio = 2.0 + 1e-6;
+
+}  // namespace
+
+StepWeights eulerWeights(double dt) { return {1, dt, dt, 0.0}; }
+
+StepWeights bdf2Weights(double dt, double last_dt) {
+  if (!(last_dt > 0.0) || dt > kLargestRatio * last_dt) return eulerWeights(dt);
+  const double r = dt / last_dt;
+  return {2, dt, (1.0 + r) / (1.0 + 2.0 * r) * dt, r / (1.0 + 2.0 * r)};
+}
+
+}  // namespace monolith

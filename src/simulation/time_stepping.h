@@ -1,0 +1,35 @@
+#pragma once
+// Time stepping, of liquid and bodies alike. With the mean acceleration A^n that a particle of liquid or a body had over
+// the last step, and f what acts on it at the end of this one (pressure, viscosity, gravity):
+//
+//   u^(n+1) = u^n(x_d) + dt ((1 - b) A^n(x_d) + b f^(n+1)),      A^(n+1) = (u^(n+1) - u^n(x_d))/dt
+//
+// b = 1: backward Euler. b = (1 + r)/(1 + 2 r), r = dt/dt_last: the second-order backward differentiation formula with
+// variable steps (BDF2; Hairer & Norsett & Wanner, Solving ODEs I, III.5), x_d the foot of the particle's trajectory. The
+// solve is the same with b dt in place of dt: L-stable, so that stiff viscosity is damped at once.
+//
+// Bodies: momentum and angular momentum, gravity and wrenches from outside held over the step; (1 - b) of the liquid's mean
+// wrench on the body is carried over, which therefore is reported as the mean over the step: with it and with that of
+// the contacts m (v^(n+1) - v^n)/dt = sum of wrenches + m g holds exactly.
+//
+// Where bodies and surface are in the solve: with BDF2 at x^n + dt u^n, corrected to x^n + dt (u^n + u^(n+1))/2 after it.
+// For a wave or a floating body this pair is neutrally stable up to omega dt = 2, as is backward Euler's x^n in the solve
+// and x^n + dt u^(n+1) after it.
+//
+// After a jump of the velocity (a start, a state that was set, an impact) a step has no past to continue: it is one of
+// backward Euler.
+
+namespace monolith {
+
+struct StepWeights {
+  int order = 1;
+  double dt = 0.0;        // s, the step
+  double implicit = 0.0;  // s, b dt: what the solve takes for the step
+  double carry = 0.0;     // 1 - b
+};
+
+StepWeights eulerWeights(double dt);
+// Backward Euler if the step is more than twice the last one (zero-stable up to 1 + sqrt(2)) or there is none.
+StepWeights bdf2Weights(double dt, double last_dt);
+
+}  // namespace monolith
