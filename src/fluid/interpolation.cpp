@@ -97,13 +97,17 @@ double sampleCubic(const Lattice& l, const std::vector<double>& field, const Eig
   if (sx.cubic && sy.cubic && sz.cubic) {
     // 16 lines of 4: 64 doubles, 200 flops with the limiter; bound by the loads.
     Line lines = {0.0, 0.0, 0.0, 0.0}, lows = lineAt(f - 1), highs = lows;
-    for (int k = -1; k <= 2; ++k) {
-      for (int j = -1; j <= 2; ++j) {
-        const Line line = lineAt(f - 1 + j * l.stride[1] + k * l.stride[2]);
-        lines += (wy[j + 1] * wz[k + 1]) * line;
+    const double* plane = f - 1 - l.stride[1] - l.stride[2];
+    for (int k = 0; k < 4; ++k, plane += l.stride[2]) {
+      Line of_plane = {0.0, 0.0, 0.0, 0.0};
+      const double* p = plane;
+      for (int j = 0; j < 4; ++j, p += l.stride[1]) {
+        const Line line = lineAt(p);
+        of_plane += wy[j] * line;
         lows = lesser(lows, line);
         highs = greater(highs, line);
       }
+      lines += wz[k] * of_plane;
     }
     sum = (wx[0] * lines[0] + wx[1] * lines[1]) + (wx[2] * lines[2] + wx[3] * lines[3]);
     if (!limited) return sum;
