@@ -25,8 +25,6 @@ bool runSolvers();
 bool runBlocks();
 // Plane channels of non-Newtonian liquids against analytic profiles: 2 % at 32 cells across.
 bool runChannel();
-// Seconds per step and stage of the drop scene at several sizes and thread counts.
-bool runBench();
 
 // Parts that cases share.
 std::string shippedScene(const std::string& name);

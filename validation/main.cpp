@@ -10,7 +10,7 @@ int main(int argc, char** argv) {
   using namespace monolith;
   const std::map<std::string, std::function<bool()>> cases = {
       {"array", runSphereArray},      {"hydrostatics", runHydrostatics}, {"settling", runSettling},
-      {"volume", [] { return runVolume(60.0); }}, {"bench", runBench},             {"slope", runSlope},
+      {"volume", [] { return runVolume(60.0); }}, {"slope", runSlope},
       {"solvers", runSolvers},        {"blocks", runBlocks},
       {"channel", runChannel},
   };
