@@ -10,7 +10,5 @@ namespace monolith {
 bool runSolvers();
 // What each part of the model costs.
 bool runBlocks();
-// Seconds per step and stage of the drop scene at several sizes and thread counts.
-bool runBench();
 
 }  // namespace monolith

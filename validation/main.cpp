@@ -9,7 +9,6 @@
 int main(int argc, char** argv) {
   using namespace monolith;
   const std::map<std::string, std::function<bool()>> cases = {
-      {"bench", runBench},
       {"solvers", runSolvers},
       {"blocks", runBlocks},
   };
