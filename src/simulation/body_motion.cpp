@@ -13,26 +13,38 @@ double approach(const std::vector<RigidBody>& bodies, const Contact& c) {
   return rate;
 }
 
-}  // namespace
-
-std::vector<char> closingBodies(const std::vector<RigidBody>& bodies, const std::vector<Contact>& contacts, double dt,
-                                double gap_tolerance) {
-  std::vector<char> closing(bodies.size(), 0);
+// Marks the bodies of a contact that fits, and all that hang together with them by contacts.
+template <class Predicate>
+std::vector<char> markBodies(std::size_t count, const std::vector<Contact>& contacts, const Predicate& fits) {
+  std::vector<char> marked(count, 0);
   for (const Contact& c : contacts) {
-    const double rate = approach(bodies, c);
-    if (rate >= 0.0 || c.gap + dt * rate >= -gap_tolerance) continue;
-    closing[c.body_a] = 1;
-    if (c.body_b != Contact::kWall) closing[c.body_b] = 1;
+    if (!fits(c)) continue;
+    marked[c.body_a] = 1;
+    if (c.body_b != Contact::kWall) marked[c.body_b] = 1;
   }
   for (bool changed = true; changed;) {
     changed = false;
     for (const Contact& c : contacts) {
-      if (c.body_b == Contact::kWall || closing[c.body_a] == closing[c.body_b]) continue;
-      closing[c.body_a] = closing[c.body_b] = 1;
+      if (c.body_b == Contact::kWall || marked[c.body_a] == marked[c.body_b]) continue;
+      marked[c.body_a] = marked[c.body_b] = 1;
       changed = true;
     }
   }
-  return closing;
+  return marked;
+}
+
+}  // namespace
+
+std::vector<char> closingBodies(const std::vector<RigidBody>& bodies, const std::vector<Contact>& contacts, double dt,
+                                double gap_tolerance) {
+  return markBodies(bodies.size(), contacts, [&](const Contact& c) {
+    const double rate = approach(bodies, c);
+    return rate < 0.0 && c.gap + dt * rate < -gap_tolerance;
+  });
+}
+
+std::vector<char> touchingBodies(std::size_t count, const std::vector<Contact>& contacts, double gap_tolerance) {
+  return markBodies(count, contacts, [&](const Contact& c) { return c.gap <= gap_tolerance; });
 }
 
 namespace {
@@ -67,10 +79,11 @@ BodyPlan planEuler(const std::vector<RigidBody>& bodies, const Vector3d& gravity
 BodyPlan planSecondOrder(const std::vector<RigidBody>& bodies, const Vector3d& gravity,
                          const std::vector<Wrench>& wrenches, const BodyPast& past, double time,
                          const StepWeights& weights, const std::vector<char>& closing,
-                         std::vector<Contact>& contacts) {
+                         const std::vector<char>& by_euler, std::vector<Contact>& contacts) {
   const double dt = weights.dt;
   BodyPlan plan;
   plan.bodies = bodies;
+  plan.by_euler = by_euler;
   plan.closing = closing;
   plan.free_twists.assign(bodies.size(), Vector6d::Zero());
   plan.motion.resize(bodies.size());
@@ -90,7 +103,7 @@ BodyPlan planSecondOrder(const std::vector<RigidBody>& bodies, const Vector3d& g
     Wrench held = wrenches[b];
     held.force += weights.carry * past.liquid[b].force;
     held.torque += weights.carry * past.liquid[b].torque;
-    if (plan.closing[b]) {
+    if (plan.by_euler[b]) {
       plan.free_twists[b] = freeTwist(body, gravity, held, dt);
       continue;
     }
@@ -119,9 +132,12 @@ void finishSecondOrder(const BodyPlan& plan, const std::vector<Vector6d>& twists
       body.p_WBcm = plan.bodies[b].p_WBcm;
       body.q_WB = plan.bodies[b].q_WB;
       body.twist = twists[b];
-    } else if (plan.closing[b]) {
-      body.twist = twists[b];
+    } else if (plan.by_euler[b]) {
+      // What touches and does not close goes on touching by the mean of both twists, too, and slides or rolls as far as
+      // it should.
+      body.twist = plan.closing[b] ? twists[b] : Vector6d(0.5 * (body.twist + twists[b]));
       advancePose(body, dt);
+      body.twist = twists[b];
     } else if (body.motion == BodyMotion::kFree) {
       finishMotion(plan.motion[b], twists[b], dt, body);
     }

@@ -25,6 +25,7 @@ constexpr double kOverlapTolerance = 0.05;  // of a cell, at the start
 constexpr int kLargestSubsteps = 64;
 // The first solve starts from nothing that it could correct later.
 constexpr double kFirstTolerance = 1e-4;
+constexpr double kTouchingGap = 0.01;       // of a cell
 constexpr double kClosingTolerance = 1e-3;  // of a cell: a gap that closes by less within a step is no impact
 // Steps of backward Euler: one in which the velocity jumps, and one for the next to continue.
 constexpr int kStepsAfterSet = 2;
@@ -105,7 +106,7 @@ struct Simulation::Impl {
   BodyPlan plan;               // of the last solve
   SolidFractions step_solids;  // as the last solve used them
   std::vector<FreeSurface> step_surface;
-  FaceField<double> carried;   // velocity that the liquid at each face had at the start of the step
+  FaceField<double> carried;  // velocity that the liquid at each face had at the start of the step
   CoupledSystem system;
   ContactLaws laws;
   ViscosityLaw viscosity_law;
@@ -175,7 +176,9 @@ BodyPlan Simulation::Impl::planBodies(const StepWeights& w, const std::vector<ch
                                       std::vector<Contact>& contacts) const {
   if (w.order == 1) return planEuler(state.bodies, scene.gravity, wrenches, state.time, w.dt);
   const BodyPast past{state.body_acceleration, state.coupled.liquid, state.coupled.contact};
-  return planSecondOrder(state.bodies, scene.gravity, wrenches, past, state.time, w, closing, contacts);
+  std::vector<char> by_euler = touchingBodies(state.bodies.size(), contacts, kTouchingGap * grid.h);
+  for (std::size_t b = 0; b < by_euler.size(); ++b) by_euler[b] = by_euler[b] || closing[b];
+  return planSecondOrder(state.bodies, scene.gravity, wrenches, past, state.time, w, closing, by_euler, contacts);
 }
 
 // Geometry of the solve.
@@ -292,7 +295,8 @@ void Simulation::Impl::moveLiquid(const StepWeights& w, const FaceField<double>&
   if (w.order == 2) {
     FaceField<double> mean = velocity_before;
     for (int a = 0; a < 3; ++a) {
-      for (std::size_t i = 0; i < grid.lattice.size; ++i) mean[a][i] = 0.5 * (mean[a][i] + state.coupled.velocity[a][i]);
+      for (std::size_t i = 0; i < grid.lattice.size; ++i)
+        mean[a][i] = 0.5 * (mean[a][i] + state.coupled.velocity[a][i]);
     }
     state.surface[0].advect(mean, w.dt, std::max(step.maximum_speed, state.liquid_speed));
   } else {
@@ -311,11 +315,11 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
     const StageClock clock(step.times.contact);
     contacts = detector->detect(state.bodies, contactReach(dt));
     closing = closingBodies(state.bodies, contacts, dt, kClosingTolerance * grid.h);
+    plan = planBodies(w, closing, contacts);
     for (Contact& contact : contacts) {
       step.penetration = std::max(step.penetration, -contact.gap);
       contact.gap *= w.implicit / w.dt;  // the solve divides it by what it takes for the step
     }
-    plan = planBodies(w, closing, contacts);
   }
   const std::vector<Wrench> liquid_before = state.coupled.liquid;
   const FaceField<double> velocity_before = w.order == 2 ? state.coupled.velocity : FaceField<double>();
@@ -324,6 +328,7 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
   step.liquid_solves += solved.solves;
   step.friction_iterations += solved.friction_iterations;
   step.residual = std::max(step.residual, solved.residual);
+  step.contact_residual = std::max(step.contact_residual, solved.contact_residual);
   step.divergence = std::max(step.divergence, solved.divergence);
   if (solved.status != CoupledReport::Status::kConverged) {
     step.status =
