@@ -30,7 +30,7 @@ constexpr double kClosingTolerance = 1e-3;  // of a cell: a gap that closes by l
 constexpr int kStepsAfterSet = 2;
 constexpr int kStepsAfterImpact = 1;
 // Parts of the very first step: the two of first order are short enough not to be seen in what follows.
-constexpr std::array<double, 3> kFirstParts = {0.125, 0.125, 0.25};
+constexpr std::array<double, 2> kFirstParts = {0.25, 0.25};
 
 class StageClock {
  public:
@@ -101,7 +101,8 @@ struct Simulation::Impl {
   MacGrid grid;
   TankWalls walls;
   SolidSampler sampler;
-  SolidFractions solids;       // at the bodies' present poses, sticking liquid not yet attached
+  SolidFractions solids;       // at the bodies' present poses, sticking liquid not yet attached; but see `predicted`
+  bool predicted = false;      // second order: of `solids` only what cells have, of the poses that were solved with
   BodyPlan plan;               // of the last solve
   SolidFractions step_solids;  // as the last solve used them
   std::vector<FreeSurface> step_surface;
@@ -145,6 +146,7 @@ void Simulation::Impl::initialise() {
 }
 
 void Simulation::Impl::prepareGeometry() {
+  predicted = false;
   sampler.sample(state.bodies, solids);
   state.surface[0].extendIntoSolids(solids.cell_distance);
 }
@@ -180,11 +182,13 @@ BodyPlan Simulation::Impl::planBodies(const StepWeights& w, const std::vector<ch
 
 // Geometry of the solve.
 void Simulation::Impl::prepareSolve(const StepWeights& w) {
-  step_surface = state.surface;
   if (w.order == 1) {
+    if (predicted) prepareGeometry();
+    step_surface = state.surface;
     step_solids = solids;
     return;
   }
+  step_surface = state.surface;
   sampler.sample(plan.bodies, step_solids);
   step_surface[0].advect(state.coupled.velocity, w.dt, state.liquid_speed);
   step_surface[0].extendIntoSolids(step_solids.cell_distance);
@@ -295,11 +299,16 @@ void Simulation::Impl::moveLiquid(const StepWeights& w, const FaceField<double>&
       for (std::size_t i = 0; i < grid.lattice.size; ++i) mean[a][i] = 0.5 * (mean[a][i] + state.coupled.velocity[a][i]);
     }
     state.surface[0].advect(mean, w.dt, std::max(step.maximum_speed, state.liquid_speed));
+    // The poses of the solve are those of now but for dt^2/2 times the acceleration.
+    solids.cell_distance = step_solids.cell_distance;
+    solids.cell_fluid = step_solids.cell_fluid;
+    state.surface[0].extendIntoSolids(solids.cell_distance);
+    predicted = true;
   } else {
     state.surface[0].advect(state.coupled.velocity, w.dt, step.maximum_speed);
+    prepareGeometry();
   }
   state.liquid_speed = step.maximum_speed;
-  prepareGeometry();
   step.volume_correction += state.surface[0].correctVolume(target_volume, solids.cell_fluid);
 }
 
