@@ -52,6 +52,7 @@ struct State {
   std::array<std::vector<std::uint8_t>, 3> known;
   FaceField<double> acceleration;           // m/s^2, of the liquid's particles, mean over the last sub-step
   std::vector<Vector6d> body_acceleration;  // likewise
+  std::vector<Wrench> mean_liquid, mean_contact;  // over the last output step
   double liquid_speed = 0.0;                // m/s, no component of the velocity is larger
   double last_dt = 0.0;                     // s, of the last sub-step
   int euler_steps = kStepsAfterSet;         // sub-steps of backward Euler that are due
@@ -140,6 +141,8 @@ void Simulation::Impl::initialise() {
   state.coupled.pressure = hydrostaticPressure(grid, state.surface[0], scene.liquid.density, scene.gravity);
   state.coupled.liquid.assign(state.bodies.size(), Wrench());
   state.coupled.contact.assign(state.bodies.size(), Wrench());
+  state.mean_liquid = state.coupled.liquid;
+  state.mean_contact = state.coupled.contact;
   prepareGeometry();
   target_volume = state.surface[0].volume(solids.cell_fluid);
   state.typical_viscosity = viscosity_law.viscosity(0.0);
@@ -259,8 +262,14 @@ void Simulation::Impl::takeMeans(const StepWeights& w, const std::vector<Wrench>
     Wrench& liquid = state.coupled.liquid[b];
     liquid.force = part * liquid.force + w.carry * liquid_before[b].force;
     liquid.torque = part * liquid.torque + w.carry * liquid_before[b].torque;
-    state.coupled.contact[b].force *= part;
-    state.coupled.contact[b].torque *= part;
+    Wrench& contact = state.coupled.contact[b];
+    contact.force *= part;
+    contact.torque *= part;
+    const double share = w.dt / scene.time_step;
+    state.mean_liquid[b].force += share * liquid.force;
+    state.mean_liquid[b].torque += share * liquid.torque;
+    state.mean_contact[b].force += share * contact.force;
+    state.mean_contact[b].torque += share * contact.torque;
   }
 }
 
@@ -400,6 +409,8 @@ StepReport Simulation::step() {
   const int threads_before = omp_get_max_threads();
   if (m.scene.solver.threads > 0) omp_set_num_threads(m.scene.solver.threads);
   const State before = m.state;
+  m.state.mean_liquid.assign(m.state.bodies.size(), Wrench());
+  m.state.mean_contact.assign(m.state.bodies.size(), Wrench());
   StepReport step;
   double left = m.scene.time_step;
   {
@@ -443,8 +454,8 @@ std::vector<BodyState> Simulation::bodyStates() const {
     s.X_WB = body.pose();
     s.velocity = body.velocityAt(s.X_WB.translation());
     s.angular_velocity = body.twist.tail<3>();
-    s.liquid = impl_->state.coupled.liquid[b];
-    s.contact = impl_->state.coupled.contact[b];
+    s.liquid = impl_->state.mean_liquid[b];
+    s.contact = impl_->state.mean_contact[b];
     out.push_back(s);
   }
   return out;
