@@ -1,5 +1,7 @@
 #include "simulation/body_motion.h"
 
+#include <algorithm>
+
 #include "rigid/rotation.h"
 
 namespace monolith {
@@ -7,10 +9,27 @@ namespace {
 
 using Eigen::Vector3d;
 
-double approach(const std::vector<RigidBody>& bodies, const Contact& c) {
+// Of the gap, m/s.
+double gapRate(const std::vector<RigidBody>& bodies, const Contact& c) {
   double rate = bodies[c.body_a].velocityAt(c.point).dot(c.normal);
   if (c.body_b != Contact::kWall) rate -= bodies[c.body_b].velocityAt(c.point).dot(c.normal);
   return rate;
+}
+
+// How much of the velocity before an impact the motion may have, in place of that after it.
+double partBefore(const std::vector<RigidBody>& before, const std::vector<Contact>& contacts,
+                  const std::vector<char>& closing, const std::vector<Vector6d>& twists, double dt) {
+  std::vector<RigidBody> after = before;
+  for (std::size_t b = 0; b < after.size(); ++b) after[b].twist = twists[b];
+  double part = 0.5;
+  for (const Contact& c : contacts) {
+    if (!closing[c.body_a]) continue;
+    const double rate = gapRate(after, c);
+    const double change = gapRate(before, c) - rate;
+    if (change >= 0.0) continue;
+    part = std::min(part, std::max(0.0, (std::max(c.gap, 0.0) + dt * rate) / (-dt * change)));
+  }
+  return part;
 }
 
 }  // namespace
@@ -19,7 +38,7 @@ std::vector<char> closingBodies(const std::vector<RigidBody>& bodies, const std:
                                 double gap_tolerance) {
   std::vector<char> closing(bodies.size(), 0);
   for (const Contact& c : contacts) {
-    const double rate = approach(bodies, c);
+    const double rate = gapRate(bodies, c);
     if (rate >= 0.0 || c.gap + dt * rate >= -gap_tolerance) continue;
     closing[c.body_a] = 1;
     if (c.body_b != Contact::kWall) closing[c.body_b] = 1;
@@ -111,8 +130,9 @@ void finishEuler(const std::vector<Vector6d>& twists, double dt, std::vector<Rig
   }
 }
 
-void finishSecondOrder(const BodyPlan& plan, const std::vector<Vector6d>& twists, double dt,
-                       std::vector<RigidBody>& bodies) {
+void finishSecondOrder(const BodyPlan& plan, const std::vector<Contact>& contacts, const std::vector<Vector6d>& twists,
+                       double dt, std::vector<RigidBody>& bodies) {
+  const double part = partBefore(bodies, contacts, plan.closing, twists, dt);
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     RigidBody& body = bodies[b];
     if (body.motion == BodyMotion::kPrescribed) {
@@ -120,8 +140,9 @@ void finishSecondOrder(const BodyPlan& plan, const std::vector<Vector6d>& twists
       body.q_WB = plan.bodies[b].q_WB;
       body.twist = twists[b];
     } else if (plan.closing[b]) {
-      body.twist = twists[b];
+      body.twist = part * body.twist + (1.0 - part) * twists[b];
       advancePose(body, dt);
+      body.twist = twists[b];
     } else if (body.motion == BodyMotion::kFree) {
       finishMotion(plan.motion[b], twists[b], dt, body);
     }

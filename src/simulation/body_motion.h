@@ -32,8 +32,8 @@ struct BodyPast {
   std::vector<Wrench> contact;         // mean
 };
 
-// Second order. Bodies that are closing move as backward Euler has it: only then does non-penetration hold at the end.
-// Points of the contacts go with the bodies.
+// Second order. Bodies that are closing stay where they are until they are solved for. Points of the contacts go with the
+// bodies.
 BodyPlan planSecondOrder(const std::vector<RigidBody>& bodies, const Eigen::Vector3d& gravity,
                          const std::vector<Wrench>& wrenches, const BodyPast& past, double time,
                          const StepWeights& weights, const std::vector<char>& closing,
@@ -41,7 +41,9 @@ BodyPlan planSecondOrder(const std::vector<RigidBody>& bodies, const Eigen::Vect
 
 // Twists as solved for; moves the bodies.
 void finishEuler(const std::vector<Vector6d>& twists, double dt, std::vector<RigidBody>& bodies);
-void finishSecondOrder(const BodyPlan& plan, const std::vector<Vector6d>& twists, double dt,
-                       std::vector<RigidBody>& bodies);
+// Closing bodies move by their new twist, for which non-penetration was solved, and by as much of the old one, at most half,
+// as leaves the contacts open: a ball that rebounds does so from the surface.
+void finishSecondOrder(const BodyPlan& plan, const std::vector<Contact>& contacts, const std::vector<Vector6d>& twists,
+                       double dt, std::vector<RigidBody>& bodies);
 
 }  // namespace monolith

@@ -234,14 +234,15 @@ CoupledReport Simulation::Impl::solveWithLiquid(const StepWeights& w, const std:
     }
   }
   const StageClock clock(step.times.solve);
+  std::vector<Contact> scaled = contacts;  // the solve divides gaps by what it takes for the step
+  for (Contact& contact : scaled) contact.gap *= w.implicit / w.dt;
   CoupledOptions options;
   options.tolerance = scene.solver.tolerance * (state.started ? 1.0 : kFirstTolerance);
   options.maximum_iterations = scene.solver.maximum_iterations;
   state.coupled.twists.resize(state.bodies.size());
   for (std::size_t b = 0; b < state.bodies.size(); ++b) state.coupled.twists[b] = state.bodies[b].twist;
   const auto solve = [&](const CoupledOptions& with) {
-    return system.solve(free_velocity, plan.free_twists, contacts, laws.of(contacts), scene.gravity, with,
-                        state.coupled);
+    return system.solve(free_velocity, plan.free_twists, scaled, laws.of(contacts), scene.gravity, with, state.coupled);
   };
   if (!nonNewtonian()) return solve(options);
   RheologyReport rheology;
@@ -329,10 +330,7 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
     const StageClock clock(step.times.contact);
     contacts = detector->detect(state.bodies, contactReach(dt));
     closing = closingBodies(state.bodies, contacts, dt, kClosingTolerance * grid.h);
-    for (Contact& contact : contacts) {
-      step.penetration = std::max(step.penetration, -contact.gap);
-      contact.gap *= w.implicit / w.dt;  // the solve divides it by what it takes for the step
-    }
+    for (const Contact& contact : contacts) step.penetration = std::max(step.penetration, -contact.gap);
     plan = planBodies(w, closing, contacts);
   }
   const std::vector<Wrench> liquid_before = state.coupled.liquid;
@@ -365,7 +363,7 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
 
   takeMeans(w, liquid_before);
   if (w.order == 2) {
-    finishSecondOrder(plan, state.coupled.twists, dt, state.bodies);
+    finishSecondOrder(plan, contacts, state.coupled.twists, dt, state.bodies);
   } else {
     finishEuler(state.coupled.twists, dt, state.bodies);
   }
