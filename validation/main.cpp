@@ -9,10 +9,8 @@
 int main(int argc, char** argv) {
   using namespace monolith;
   const std::map<std::string, std::function<bool()>> cases = {
-      {"array", runSphereArray},      {"hydrostatics", runHydrostatics}, {"settling", runSettling},
-      {"volume", [] { return runVolume(60.0); }}, {"bench", runBench},             {"slope", runSlope},
-      {"solvers", runSolvers},        {"blocks", runBlocks},
-      {"channel", runChannel},
+      {"solvers", runSolvers},
+      {"blocks", runBlocks},
   };
   if (argc < 2) {
     std::printf("usage: monolith_cases CASE...\ncases:");

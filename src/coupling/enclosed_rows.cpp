@@ -1,5 +1,6 @@
 #include "coupling/enclosed_rows.h"
 
+#include <algorithm>
 #include <array>
 
 namespace monolith {
@@ -7,25 +8,42 @@ namespace {
 
 using Cell = std::array<int, 3>;
 
-// Breadth-first from all cells with pressure into `inside` cells: for each the nearest cell with pressure, and the steps
-// from there.
+// Breadth-first from all cells with pressure into cells without, `inside` ones: for each the nearest cell with pressure,
+// and the steps from there.
 struct Nearest {
   std::vector<std::ptrdiff_t> cell;
   std::vector<Cell> steps;
 };
+
+// Index of the cell next to `at` along an axis, which is moved there; -1 beyond a wall.
+std::ptrdiff_t step(const Lattice& l, Cell& at, int axis, int direction) {
+  at[axis] += direction;
+  if (l.periodic[axis]) at[axis] = (at[axis] + l.n[axis]) % l.n[axis];
+  return at[axis] < 0 || at[axis] >= l.n[axis] ? -1 : l.index(at[0], at[1], at[2]);
+}
 
 Nearest findNearest(const Lattice& l, const std::vector<std::uint8_t>& has_pressure, const std::vector<char>& inside) {
   Nearest out;
   out.cell.assign(l.size, -1);
   out.steps.assign(l.size, Cell{0, 0, 0});
   std::vector<Cell> front;
+  const auto hasWayIn = [&](const Cell& here) {
+    for (int a = 0; a < 3; ++a) {
+      for (const int direction : {-1, 1}) {
+        Cell next = here;
+        const auto n = step(l, next, a, direction);
+        if (n >= 0 && inside[n] && !has_pressure[n]) return true;
+      }
+    }
+    return false;
+  };
   for (int k = 0; k < l.n[2]; ++k) {
     for (int j = 0; j < l.n[1]; ++j) {
       for (int i = 0; i < l.n[0]; ++i) {
         const auto c = l.index(i, j, k);
         if (!has_pressure[c]) continue;
         out.cell[c] = c;
-        front.push_back({i, j, k});
+        if (hasWayIn({i, j, k})) front.push_back({i, j, k});
       }
     }
   }
@@ -35,11 +53,8 @@ Nearest findNearest(const Lattice& l, const std::vector<std::uint8_t>& has_press
     for (int a = 0; a < 3; ++a) {
       for (const int direction : {-1, 1}) {
         Cell next = here;
-        next[a] += direction;
-        if (l.periodic[a]) next[a] = (next[a] + l.n[a]) % l.n[a];
-        if (next[a] < 0 || next[a] >= l.n[a]) continue;
-        const auto n = l.index(next[0], next[1], next[2]);
-        if (out.cell[n] >= 0 || !inside[n]) continue;
+        const auto n = step(l, next, a, direction);
+        if (n < 0 || out.cell[n] >= 0 || !inside[n]) continue;
         out.cell[n] = out.cell[c];
         out.steps[n] = out.steps[c];
         out.steps[n][a] += direction;
@@ -66,14 +81,23 @@ std::vector<EnclosedWeight> moveEnclosedRows(const MacGrid& grid, const SolidFra
   }
   if (rows.enclosed.empty()) return weights;
   const Lattice& l = grid.lattice;
+  const auto isBelowSurface = [&](const BodyRow& row) { return liquid_distance[row.sample] < 0.0; };
+  if (std::none_of(rows.enclosed.begin(), rows.enclosed.end(), isBelowSurface)) {
+    rows.enclosed.clear();
+    return weights;
+  }
   // Along the contact first: through a body only if the contact has no rim.
   std::vector<char> contact(l.size, 0);
   for (const BodyRow& row : rows.enclosed) contact[row.sample] = 1;
   const Nearest along = findNearest(l, coefficients.has_pressure, contact);
-  const Nearest through = findNearest(l, coefficients.has_pressure, std::vector<char>(l.size, 1));
+  const auto hasNoRim = [&](const BodyRow& row) { return isBelowSurface(row) && along.cell[row.sample] < 0; };
+  Nearest through;
+  if (std::any_of(rows.enclosed.begin(), rows.enclosed.end(), hasNoRim)) {
+    through = findNearest(l, coefficients.has_pressure, std::vector<char>(l.size, 1));
+  }
   for (const BodyRow& row : rows.enclosed) {
-    if (!(liquid_distance[row.sample] < 0.0)) continue;
-    const Nearest& nearest = along.cell[row.sample] >= 0 ? along : through;
+    if (!isBelowSurface(row)) continue;
+    const Nearest& nearest = hasNoRim(row) ? through : along;
     const auto q = nearest.cell[row.sample];
     if (q < 0) continue;
     rows.divergence.push_back({q, row.body, row.coefficient});

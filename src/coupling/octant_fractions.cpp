@@ -5,6 +5,12 @@
 #include "geometry/cube_fraction.h"
 
 namespace monolith {
+namespace {
+
+// Half the diagonal of a cube of width one, and a little more: a surface farther from its centre does not cut it.
+constexpr double kHalfDiagonal = 0.8662;
+
+}  // namespace
 
 void octantFractions(const SignedDistance& solid, const Eigen::Vector3d& center, const Eigen::Matrix3d& R_WB,
                      double width, Octants& out) {
@@ -14,13 +20,17 @@ void octantFractions(const SignedDistance& solid, const Eigen::Vector3d& center,
   for (int o = 0; o < 8; ++o) {
     const Eigen::Vector3d octant = center + corner(o, 0.25 * width);
     const double distance = solid.distance(octant);
-    if (std::abs(distance) > 0.4331 * width) {
+    if (std::abs(distance) > kHalfDiagonal * 0.5 * width) {
       out[o] = distance < 0.0 ? 1.0 : 0.0;
       continue;
     }
     double sum = 0.0;
     for (int q = 0; q < 8; ++q) {
       const DistanceSample s = solid.sample(octant + corner(q, 0.125 * width));
+      if (std::abs(s.distance) > kHalfDiagonal * 0.25 * width) {
+        sum += s.distance < 0.0 ? 1.0 : 0.0;
+        continue;
+      }
       sum += insideFraction(s.distance, R_WB * s.gradient, 0.25 * width);
     }
     out[o] = 0.125 * sum;

@@ -29,6 +29,25 @@ std::ptrdiff_t gridIndex(const Lattice& l, std::array<int, 3> cell, int face_axi
   return l.index(cell[0], cell[1], cell[2]);
 }
 
+template <class Value>
+void copyField(const std::vector<Value>& from, std::vector<Value>& to) {
+  to.resize(from.size());
+#pragma omp parallel for simd schedule(static)
+  for (std::size_t i = 0; i < from.size(); ++i) to[i] = from[i];
+}
+
+// f(i, j, k, g) for every place of a body's box; g: its face on the grid, or -1.
+template <class Function>
+void forEachFace(const Lattice& l, const BodyFractions& box, int axis, Function&& f) {
+  for (int k = 0; k < box.count[2]; ++k) {
+    for (int j = 0; j < box.count[1]; ++j) {
+      for (int i = 0; i < box.count[0]; ++i) {
+        f(i, j, k, gridIndex(l, {box.low[0] + i, box.low[1] + j, box.low[2] + k}, axis));
+      }
+    }
+  }
+}
+
 }  // namespace
 
 SolidSampler::SolidSampler(const MacGrid& grid) : grid_(grid) {
@@ -66,11 +85,13 @@ SolidSampler::SolidSampler(const MacGrid& grid) : grid_(grid) {
 }
 
 void SolidSampler::sample(const std::vector<RigidBody>& bodies, SolidFractions& out) const {
-  out.fluid = walls_.fluid;
-  out.distance = walls_.distance;
-  out.owner = walls_.owner;
-  out.cell_distance = walls_.cell_distance;
-  out.cell_fluid = walls_.cell_fluid;
+  for (int a = 0; a < 3; ++a) {
+    copyField(walls_.fluid[a], out.fluid[a]);
+    copyField(walls_.distance[a], out.distance[a]);
+    copyField(walls_.owner[a], out.owner[a]);
+  }
+  copyField(walls_.cell_distance, out.cell_distance);
+  copyField(walls_.cell_fluid, out.cell_fluid);
   out.bodies.resize(bodies.size());
   for (std::size_t b = 0; b < bodies.size(); ++b) sampleBody(bodies[b], static_cast<int>(b), out);
   close(out);
@@ -85,6 +106,7 @@ void SolidSampler::sampleBody(const RigidBody& body, int index, SolidFractions& 
   const Eigen::AlignedBox3d box = body.distance->bounds().transformed(X_WB);
 
   BodyFractions& f = out.bodies[index];
+  bool endless[3] = {false, false, false};
   for (int a = 0; a < 3; ++a) {
     const double low = (box.min()[a] - grid_.origin[a]) / h;
     const double high = (box.max()[a] - grid_.origin[a]) / h;
@@ -93,6 +115,11 @@ void SolidSampler::sampleBody(const RigidBody& body, int index, SolidFractions& 
     if (!l.periodic[a]) {
       first = std::clamp(first, -1, l.n[a]);
       last = std::clamp(last, -1, l.n[a]);
+    } else if (high - low > l.n[a] + kMargin) {
+      // Longer than the tank's period: endless, and one period of it counts, far from where the shape ends.
+      first += (last - first + 1 - l.n[a]) / 2;
+      last = first + l.n[a] - 1;
+      endless[a] = true;
     }
     f.low[a] = first;
     f.count[a] = std::max(0, last - first + 1);
@@ -152,9 +179,9 @@ void SolidSampler::sampleBody(const RigidBody& body, int index, SolidFractions& 
         const std::array<int, 3> at = {i, j, k};
         for (int a = 0; a < 3; ++a) {
           double low_part = 0.0;
-          if (at[a] > 0) {
+          if (at[a] > 0 || endless[a]) {
             std::array<int, 3> before = at;
-            --before[a];
+            before[a] = (at[a] > 0 ? at[a] : f.count[a]) - 1;
             low_part = halves[f.local(before[0], before[1], before[2])][2 * a + 1];
           }
           f.face[a][c] = 0.5 * (low_part + halves[c][2 * a]);
@@ -178,50 +205,38 @@ void SolidSampler::sampleBody(const RigidBody& body, int index, SolidFractions& 
 // where what they leave is negligible.
 void SolidSampler::close(SolidFractions& out) const {
   const Lattice& l = grid_.lattice;
-  FaceField<double> solid;
-  for (int a = 0; a < 3; ++a) {
-    solid[a].assign(l.size, 0.0);
-    for (const BodyFractions& f : out.bodies) {
-      for (int k = 0; k < f.count[2]; ++k) {
-        for (int j = 0; j < f.count[1]; ++j) {
-          for (int i = 0; i < f.count[0]; ++i) {
-            const auto g = gridIndex(l, {f.low[0] + i, f.low[1] + j, f.low[2] + k}, a);
-            if (g >= 0) solid[a][g] += f.face[a][f.local(i, j, k)];
-          }
-        }
-      }
+  // First what the bodies leave, which is less than nothing where they overlap.
+  for (const BodyFractions& f : out.bodies) {
+    for (int a = 0; a < 3; ++a) {
+      forEachFace(l, f, a, [&](int i, int j, int k, std::ptrdiff_t g) {
+        if (g >= 0 && walls_.fluid[a][g] > 0.0) out.fluid[a][g] -= f.face[a][f.local(i, j, k)];
+      });
     }
   }
   for (BodyFractions& f : out.bodies) {
     f.at_walls.clear();
     for (int a = 0; a < 3; ++a) {
-      for (int k = 0; k < f.count[2]; ++k) {
-        for (int j = 0; j < f.count[1]; ++j) {
-          for (int i = 0; i < f.count[0]; ++i) {
-            double& fraction = f.face[a][f.local(i, j, k)];
-            if (fraction == 0.0) continue;
-            const auto g = gridIndex(l, {f.low[0] + i, f.low[1] + j, f.low[2] + k}, a);
-            if (g < 0 || walls_.fluid[a][g] == 0.0) {
-              const std::array<int, 3> at = {f.low[0] + i, f.low[1] + j, f.low[2] + k};
-              if (g >= 0 && (at[a] == 0 || at[a] == l.n[a])) {
-                f.at_walls.push_back(
-                    {a, g, at[a] == 0 ? g : g - l.stride[a], fraction, grid_.faceCenter(a, at[0], at[1], at[2])});
-              }
-              fraction = 0.0;
-            } else if (solid[a][g] > 1.0 - kLeastFluid) {
-              fraction /= solid[a][g];
-            }
+      forEachFace(l, f, a, [&](int i, int j, int k, std::ptrdiff_t g) {
+        double& fraction = f.face[a][f.local(i, j, k)];
+        if (fraction == 0.0) return;
+        if (g < 0 || walls_.fluid[a][g] == 0.0) {
+          const std::array<int, 3> at = {f.low[0] + i, f.low[1] + j, f.low[2] + k};
+          if (g >= 0 && (at[a] == 0 || at[a] == l.n[a])) {
+            f.at_walls.push_back(
+                {a, g, at[a] == 0 ? g : g - l.stride[a], fraction, grid_.faceCenter(a, at[0], at[1], at[2])});
           }
+          fraction = 0.0;
+        } else if (out.fluid[a][g] < kLeastFluid) {
+          fraction /= 1.0 - out.fluid[a][g];
         }
-      }
+      });
     }
   }
   for (int a = 0; a < 3; ++a) {
-#pragma omp parallel for schedule(static)
-    for (std::size_t g = 0; g < l.size; ++g) {
-      if (solid[a][g] > 0.0 && out.fluid[a][g] > 0.0) {
-        out.fluid[a][g] = solid[a][g] > 1.0 - kLeastFluid ? 0.0 : 1.0 - solid[a][g];
-      }
+    for (const BodyFractions& f : out.bodies) {
+      forEachFace(l, f, a, [&](int, int, int, std::ptrdiff_t g) {
+        if (g >= 0 && out.fluid[a][g] < kLeastFluid) out.fluid[a][g] = 0.0;
+      });
     }
     fillHalo(l, out.fluid[a]);
     fillHalo(l, out.distance[a]);

@@ -150,15 +150,14 @@ std::string StepProblem::rightSide(const FaceField<double>& free_velocity, const
   rhs.resize(l, bodies->size());
   rhs.setZero();
   // What the prescribed motions do.
-  StepVector prescribed;
-  prescribed.resize(l, bodies->size());
-  bool any_prescribed = false;
+  std::vector<int> moved;
   for (std::size_t b = 0; b < bodies->size(); ++b) {
-    if (free_index[b] >= 0 || free_twists[b].isZero(0.0)) continue;
-    prescribed.bodies[b] = free_twists[b];
-    any_prescribed = true;
+    if (free_index[b] < 0 && !free_twists[b].isZero(0.0)) moved.push_back(static_cast<int>(b));
   }
-  if (any_prescribed) {
+  if (!moved.empty()) {
+    StepVector prescribed;
+    prescribed.resize(l, bodies->size());
+    for (const int b : moved) prescribed.bodies[b] = free_twists[b];
     op_.apply(prescribed, rhs);
     for (auto& field : rhs.velocity) {
       clearHalo(l, field);
@@ -171,9 +170,9 @@ std::string StepProblem::rightSide(const FaceField<double>& free_velocity, const
   FaceField<double> wanted = free_velocity;
   toUnknowns(wanted);
   for (int a = 0; a < 3; ++a) {
-    std::vector<double> mass = coefficients.mass[a];
-    clearHalo(l, mass);
-    for (std::size_t i = 0; i < l.size; ++i) rhs.velocity[a][i] += mass[i] * wanted[a][i];
+    clearHalo(l, wanted[a]);
+#pragma omp parallel for simd schedule(static)
+    for (std::size_t i = 0; i < l.size; ++i) rhs.velocity[a][i] += coefficients.mass[a][i] * wanted[a][i];
   }
   for (std::size_t i = 0; i < free.size(); ++i) rhs.bodies[free[i]] += solid_inertia[i] * free_twists[free[i]];
   for (const StickingLiquid& s : sticking) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "coupling/fitted_segment.h"
+#include "coupling/stokes_samples.h"
 #include "solve/staggered_transfer.h"
 
 namespace monolith {
@@ -15,36 +15,6 @@ constexpr double kLeastLiquid = 1e-3;  // cell widths
 bool isWet(double distance) { return distance < -kLeastLiquid; }
 constexpr double kLeastSliver = 0.05;
 constexpr double kDistanceCap = 2.5;   // cell widths; the fine distances are right at least up to here
-
-// Liquid part of a cube of width one from the distance at its centre.
-double liquidOfCube(double distance) { return std::clamp(0.5 - distance, 0.0, 1.0); }
-
-class SampleBuilder {
- public:
-  SampleBuilder(const Lattice& l, const StokesGeometry& g, const StaggeredCoefficients<double>& c)
-      : lattice(l), geometry(g), coefficients(c) {}
-
-  FaceKind kind(int axis, std::ptrdiff_t f) const {
-    const bool solid = (*geometry.solid_distance)[axis][f] <= 0.0;
-    if (coefficients.mass[axis][f] > 0.0) return solid ? FaceKind::kSliver : FaceKind::kFluid;
-    return solid || (*geometry.fluid)[axis][f] <= 0.0 ? FaceKind::kSolid : FaceKind::kAir;
-  }
-  FittedSegment segment(int axis, std::ptrdiff_t a, std::ptrdiff_t b) const {
-    const auto& distance = (*geometry.solid_distance)[axis];
-    return fitSegment(kind(axis, a), distance[a], kind(axis, b), distance[b]);
-  }
-  double liquidOfCell(std::ptrdiff_t c) const { return liquidOfCube((*geometry.liquid_distance)[c]); }
-  double liquidOfEdge(std::ptrdiff_t c, int a, int b) const {
-    const auto& d = *geometry.liquid_distance;
-    const auto sa = lattice.stride[a];
-    const auto sb = lattice.stride[b];
-    return liquidOfCube(0.25 * (d[c] + d[c - sa] + d[c - sb] + d[c - sa - sb]));
-  }
-
-  const Lattice& lattice;
-  const StokesGeometry& geometry;
-  const StaggeredCoefficients<double>& coefficients;
-};
 
 // Beyond the walls: solid, half a cell from them. Along periodic axes the images.
 void closeHalo(const Lattice& l, int face_axis, std::vector<double>& distance) {
@@ -61,43 +31,78 @@ void closeHalo(const Lattice& l, int face_axis, std::vector<double>& distance) {
   fillHalo(l, distance);
 }
 
-// Collects the rows of the bodies sample by sample.
-class RowBuilder {
- public:
-  RowBuilder(const SampleBuilder& samples, const SolidFractions& solids, const std::vector<RigidBody>& bodies, double h)
-      : samples_(samples), solids_(solids), bodies_(bodies), h_(h) {}
-
-  // The solid ends of a segment of component `axis` from face a at x_a to face b at x_b = x_a + h along `along`, as
-  // they enter factor * (U_b - U_a).
-  void addSegment(int axis, std::ptrdiff_t a, std::ptrdiff_t b, const Eigen::Vector3d& x_a, int along, double factor,
-                  const FittedSegment& s, std::ptrdiff_t sample, std::vector<BodyRow>& out) const {
-    Eigen::Vector3d x_b = x_a;
-    x_b[along] += h_;
-    const bool solid_a = isSolid(samples_.kind(axis, a));
-    const bool solid_b = isSolid(samples_.kind(axis, b));
-    Eigen::Vector3d surface = x_a;
-    if (!s.both_solid) surface[along] += (solid_a ? 1.0 - s.theta : s.theta) * h_;
-    if (solid_a) addEnd(axis, a, x_a, s.both_solid ? x_a : surface, -factor, sample, out);
-    if (solid_b) addEnd(axis, b, x_b, s.both_solid ? x_b : surface, factor, sample, out);
+// The viscous samples of one cell, whatever is around it.
+void buildSamples(const SampleBuilder& samples, double viscous_number, std::ptrdiff_t c,
+                  StaggeredCoefficients<double>& out, StrainScales* strain) {
+  const Lattice& l = samples.lattice;
+  for (int a = 0; a < 3; ++a) {
+    const FittedSegment s = samples.segment(a, c, c + l.stride[a]);
+    if (s.defined && !s.both_solid) {
+      // eta |D_aa|^2: D^T D gives 2 N per unit weight; weight theta over theta^2.
+      out.normal[a][c] = 2.0 * viscous_number * samples.liquidOfCell(c) / s.theta;
+      if (strain != nullptr && out.normal[a][c] > 0.0) strain->normal[a][c] = 1.0 / s.theta;
+    }
+    if (samples.kind(a, c) == FaceKind::kSliver) {
+      // The film between the face's open part and the surface is about half the open part thick.
+      out.drag[a][c] = 4.0 * viscous_number / std::max(out.open[a][c], kLeastSliver);
+      if (strain != nullptr) strain->drag[a][c] = 2.0 / std::max(out.open[a][c], kLeastSliver);
+    }
   }
-
- private:
-  // A solid end's velocity is the body's at `target`. A sliver's unknown already stands for it at the face itself.
-  void addEnd(int axis, std::ptrdiff_t f, const Eigen::Vector3d& x_face, const Eigen::Vector3d& target, double factor,
-              std::ptrdiff_t sample, std::vector<BodyRow>& out) const {
-    const int owner = solids_.owner[axis][f];
-    if (owner < 0) return;
-    Vector6d row = velocityRow(axis, target, bodies_[owner].p_WBcm);
-    if (samples_.kind(axis, f) == FaceKind::kSliver) row -= velocityRow(axis, x_face, bodies_[owner].p_WBcm);
-    if (row.cwiseAbs().maxCoeff() == 0.0) return;
-    out.push_back({sample, owner, factor * row});
+  for (int p = 0; p < 3; ++p) {
+    const auto [a, b] = kShearPairs[p];
+    const FittedSegment s = samples.segment(a, c - l.stride[b], c);
+    const FittedSegment t = samples.segment(b, c - l.stride[a], c);
+    if (!s.defined || !t.defined) continue;
+    // eta 2 (1/2 (du + dv))^2, energy weight times N, its square root shared between the two differences.
+    const auto& d = *samples.geometry.solid_distance;
+    const double share = shearWeight(s, t, d[a][c - l.stride[b]], d[a][c], d[b][c - l.stride[a]], d[b][c]);
+    const double weight = std::sqrt(viscous_number * samples.liquidOfEdge(c, a, b) * share);
+    out.shear[p][0][c] = weight / s.theta;
+    out.shear[p][1][c] = weight / t.theta;
+    if (strain != nullptr && weight > 0.0) strain->shear[p][c] = 1.0 / weight;
   }
+}
 
-  const SampleBuilder& samples_;
-  const SolidFractions& solids_;
-  const std::vector<RigidBody>& bodies_;
-  double h_;
-};
+// The same for the cells of a row that markPlain() found so; zero for the others.
+void buildPlainRow(const SampleBuilder& samples, double viscous_number, std::ptrdiff_t row,
+                   const std::vector<std::uint8_t>& mark, StaggeredCoefficients<double>& out) {
+  const int width = static_cast<int>(mark.size());
+  const std::uint8_t* m = mark.data();
+  const double* d = samples.geometry.liquid_distance->data() + row;
+  const double number = 2.0 * viscous_number;
+  const auto part = [](double x) { return std::min(std::max(0.5 - x, 0.0), 1.0); };
+  double* normal[3];
+  for (int a = 0; a < 3; ++a) normal[a] = out.normal[a].data() + row;
+#pragma omp simd
+  for (int i = 0; i < width; ++i) {
+    const double value = m[i] == 0 ? number * part(d[i]) : 0.0;
+    normal[0][i] = value;
+    normal[1][i] = value;
+    normal[2][i] = value;
+  }
+  for (int p = 0; p < 3; ++p) {
+    const auto sa = samples.lattice.stride[kShearPairs[p][0]];
+    const auto sb = samples.lattice.stride[kShearPairs[p][1]];
+    double* first = out.shear[p][0].data() + row;
+    double* second = out.shear[p][1].data() + row;
+#pragma omp simd
+    for (int i = 0; i < width; ++i) {
+      const double liquid = part(0.25 * (d[i] + d[i - sa] + d[i - sb] + d[i - sa - sb]));
+      const double weight = m[i] == 0 ? std::sqrt(viscous_number * liquid) : 0.0;
+      first[i] = weight;
+      second[i] = weight;
+    }
+  }
+}
+
+std::vector<double> capped(const std::vector<double>& distance) {
+  std::vector<double> out(distance.size());
+#pragma omp parallel for simd schedule(static)
+  for (std::size_t f = 0; f < out.size(); ++f) {
+    out[f] = std::min(std::max(distance[f], -kDistanceCap), kDistanceCap);
+  }
+  return out;
+}
 
 }  // namespace
 
@@ -159,34 +164,12 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
   if (strain != nullptr) strain->resize(l);
   const SampleBuilder samples(l, geometry, out);
   forEachRow(l, [&](std::ptrdiff_t row, int, int) {
-    for (auto c = row; c < row + width; ++c) {
-      for (int a = 0; a < 3; ++a) {
-        const FittedSegment s = samples.segment(a, c, c + l.stride[a]);
-        if (s.defined && !s.both_solid) {
-          // eta |D_aa|^2: D^T D gives 2 N per unit weight; weight theta over theta^2.
-          out.normal[a][c] = 2.0 * viscous_number * samples.liquidOfCell(c) / s.theta;
-          if (strain != nullptr && out.normal[a][c] > 0.0) strain->normal[a][c] = 1.0 / s.theta;
-        }
-        if (samples.kind(a, c) == FaceKind::kSliver) {
-          // The film between the face's open part and the surface is about half the open part thick.
-          out.drag[a][c] = 4.0 * viscous_number / std::max(out.open[a][c], kLeastSliver);
-          if (strain != nullptr) strain->drag[a][c] = 2.0 / std::max(out.open[a][c], kLeastSliver);
-        }
-      }
-      for (int p = 0; p < 3; ++p) {
-        const auto [a, b] = kShearPairs[p];
-        const FittedSegment s = samples.segment(a, c - l.stride[b], c);
-        const FittedSegment t = samples.segment(b, c - l.stride[a], c);
-        if (!s.defined || !t.defined) continue;
-        // eta 2 (1/2 (du + dv))^2, energy weight times N, its square root shared between the two differences.
-        const auto& d = *geometry.solid_distance;
-        const double share =
-            shearWeight(s, t, d[a][c - l.stride[b]], d[a][c], d[b][c - l.stride[a]], d[b][c]);
-        const double weight = std::sqrt(viscous_number * samples.liquidOfEdge(c, a, b) * share);
-        out.shear[p][0][c] = weight / s.theta;
-        out.shear[p][1][c] = weight / t.theta;
-        if (strain != nullptr && weight > 0.0) strain->shear[p][c] = 1.0 / weight;
-      }
+    thread_local std::vector<std::uint8_t> mark;
+    samples.markPlain(row, width, mark);
+    buildPlainRow(samples, viscous_number, row, mark, out);
+    for (int i = 0; i < width; ++i) {
+      if (mark[i] == 0 && strain == nullptr) continue;
+      buildSamples(samples, viscous_number, row + i, out, strain);
     }
   });
   for (int a = 0; a < 3; ++a) {
@@ -197,92 +180,27 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
   if (strain != nullptr) strain->fillHalos(l);
 }
 
-void buildBodyRows(const MacGrid& grid, const SolidFractions& solids, const std::vector<RigidBody>& bodies,
-                   const StokesGeometry& geometry, const StaggeredCoefficients<double>& coefficients, BodyRows& out) {
-  const Lattice& l = grid.lattice;
-  const double h = grid.h;
-  out = BodyRows();
-
-  buildDivergenceRows(grid, solids, bodies, coefficients, out);
-  if (!coefficients.viscous) return;
-
-  // J_s: every sample with an end in a body.
-  const SampleBuilder samples(l, geometry, coefficients);
-  const RowBuilder rows(samples, solids, bodies, h);
-  const int end_j = l.faceEnd(1);
-  const int end_k = l.faceEnd(2);
-  std::vector<BodyRows> slabs(end_k);
-#pragma omp parallel for schedule(static)
-  for (int k = 0; k < end_k; ++k) {
-    BodyRows& slab = slabs[k];
-    for (int j = 0; j < end_j; ++j) {
-      for (int i = 0; i < l.faceEnd(0); ++i) {
-        const auto c = l.index(i, j, k);
-        // Nothing of a body within reach of the samples of this cell.
-        if (solids.cell_distance[c] > 2.5) continue;
-        for (int a = 0; a < 3; ++a) {
-          const auto sa = l.stride[a];
-          if (coefficients.normal[a][c] > 0.0) {
-            const FittedSegment s = samples.segment(a, c, c + sa);
-            rows.addSegment(a, c, c + sa, grid.faceCenter(a, i, j, k), a, 1.0, s, c, slab.normal[a]);
-          }
-          if (coefficients.drag[a][c] > 0.0 && solids.owner[a][c] >= 0) {
-            const int owner = solids.owner[a][c];
-            slab.drag[a].push_back({c, owner, velocityRow(a, grid.faceCenter(a, i, j, k), bodies[owner].p_WBcm)});
-          }
-        }
-        for (int p = 0; p < 3; ++p) {
-          const auto [a, b] = kShearPairs[p];
-          const auto sa = l.stride[a];
-          const auto sb = l.stride[b];
-          const double factor_a = coefficients.shear[p][0][c];
-          const double factor_b = coefficients.shear[p][1][c];
-          if (factor_a == 0.0 && factor_b == 0.0) continue;
-          Eigen::Vector3d x_a = grid.faceCenter(a, i, j, k);
-          x_a[b] -= h;
-          Eigen::Vector3d x_b = grid.faceCenter(b, i, j, k);
-          x_b[a] -= h;
-          rows.addSegment(a, c - sb, c, x_a, b, factor_a, samples.segment(a, c - sb, c), c, slab.shear[p]);
-          rows.addSegment(b, c - sa, c, x_b, a, factor_b, samples.segment(b, c - sa, c), c, slab.shear[p]);
-        }
-      }
-    }
-  }
-  for (const BodyRows& slab : slabs) {
-    for (int a = 0; a < 3; ++a) {
-      out.normal[a].insert(out.normal[a].end(), slab.normal[a].begin(), slab.normal[a].end());
-      out.shear[a].insert(out.shear[a].end(), slab.shear[a].begin(), slab.shear[a].end());
-      out.drag[a].insert(out.drag[a].end(), slab.drag[a].begin(), slab.drag[a].end());
-    }
-  }
-}
-
 void buildCoarseLevels(const Lattice& lattice, const StokesGeometry& geometry, double viscous_number,
                        std::vector<StaggeredCoefficients<float>>& levels) {
   Lattice l = lattice;
-  FaceField<double> fluid = *geometry.fluid;
-  FaceField<double> distance = *geometry.solid_distance;
-  std::vector<double> liquid = *geometry.liquid_distance;
+  FaceField<double> fluid, distance;
+  std::vector<double> liquid, to;
   StaggeredCoefficients<double> coefficients;
   std::size_t count = 1;
-  // Away from a body its distance is not known, only that it is large: cap it, or averages next to the body go wrong.
-  for (auto& field : distance) {
-    for (double& d : field) d = std::clamp(d, -kDistanceCap, kDistanceCap);
-  }
   while (canCoarsen(l)) {
     const Lattice coarse = coarsened(l);
+    const bool first = count == 1;
     for (int a = 0; a < 3; ++a) {
-      std::vector<double> to;
-      restrictFaces(l, a, fluid[a], coarse, to);
+      restrictFaces(l, a, first ? (*geometry.fluid)[a] : fluid[a], coarse, to);
       fillHalo(coarse, to);
       fluid[a].swap(to);
-      restrictFaces(l, a, distance[a], coarse, to);
+      // Away from a body its distance is not known, only that it is large: cap it, or averages next to the body go wrong.
+      restrictFaces(l, a, first ? capped((*geometry.solid_distance)[a]) : distance[a], coarse, to);
       for (double& d : to) d *= 0.5;
       closeHalo(coarse, a, to);
       distance[a].swap(to);
     }
-    std::vector<double> to;
-    restrictCells(l, liquid, coarse, to);
+    restrictCells(l, first ? *geometry.liquid_distance : liquid, coarse, to);
     for (double& d : to) d *= 0.5;
     extendIntoHalo(coarse, to);
     liquid.swap(to);

@@ -1,5 +1,7 @@
 #include "fluid/advection.h"
 
+#include <cmath>
+
 #include "fluid/interpolation.h"
 
 namespace monolith {
@@ -31,48 +33,86 @@ void mirrorIntoHalo(const Lattice& l, int face_axis, bool no_slip, std::vector<d
   fillHalo(l, field);
 }
 
-// Foot of the trajectory that arrives at x after dt, in cell widths.
-Eigen::Vector3d traceBack(const MacGrid& grid, const FaceField<double>& velocity, const Eigen::Vector3d& x, double dt) {
-  const double scale = dt / grid.h;
-  const Eigen::Vector3d half = x - 0.5 * scale * velocityAt(grid.lattice, velocity, x);
-  return x - scale * velocityAt(grid.lattice, velocity, half);
+// Foot of the trajectory that arrives at x with velocity v after dt (scale: dt/h), in cell widths.
+inline Eigen::Vector3d traceBack(const Lattice& l, const FaceField<double>& velocity, const Eigen::Vector3d& x,
+                                 const Eigen::Vector3d& v, double scale) {
+  return x - scale * sampleVelocity(l, velocity, x - 0.5 * scale * v);
+}
+
+// Trilinear interpolation at nodes: means of the nearest faces.
+inline Eigen::Vector3d velocityAtFace(const Lattice& l, const FaceField<double>& velocity, int axis, std::ptrdiff_t f) {
+  Eigen::Vector3d v;
+  const auto s = l.stride[axis];
+  for (int b = 0; b < 3; ++b) {
+    const double* u = velocity[b].data() + f;
+    v[b] = b == axis ? u[0] : 0.25 * (u[0] + u[l.stride[b]] + u[-s] + u[l.stride[b] - s]);
+  }
+  return v;
+}
+
+inline Eigen::Vector3d velocityAtCell(const Lattice& l, const FaceField<double>& velocity, std::ptrdiff_t c) {
+  Eigen::Vector3d v;
+  for (int b = 0; b < 3; ++b) v[b] = 0.5 * (velocity[b][c] + velocity[b][c + l.stride[b]]);
+  return v;
 }
 
 }  // namespace
 
 Eigen::Vector3d velocityAt(const Lattice& l, const FaceField<double>& velocity, const Eigen::Vector3d& position) {
-  Eigen::Vector3d v;
-  for (int a = 0; a < 3; ++a) v[a] = sampleLinear(l, velocity[a], position - nodeOffset(a));
-  return v;
+  return sampleVelocity(l, velocity, position);
 }
 
 void extrapolateVelocity(const Lattice& l, int layers, bool no_slip, std::array<std::vector<std::uint8_t>, 3>& known,
                          FaceField<double>& velocity) {
+  // One list of unknown faces for each plane of faces, so that threads do not meet.
+  std::vector<std::vector<std::ptrdiff_t>> missing(l.faceEnd(2)), found(l.faceEnd(2));
   for (int a = 0; a < 3; ++a) {
     std::vector<double>& u = velocity[a];
     std::vector<std::uint8_t>& mask = known[a];
+    const int planes = l.faceEnd(2);
+#pragma omp parallel for schedule(static)
+    for (int k = 0; k < planes; ++k) {
+      missing[k].clear();
+      for (int j = 0; j < l.faceEnd(1); ++j) {
+        const auto row = l.index(0, j, k);
+        for (auto f = row; f < row + l.faceEnd(0); ++f) {
+          if (!mask[f]) missing[k].push_back(f);
+        }
+      }
+    }
     for (int layer = 0; layer < layers; ++layer) {
       fillHalo(l, u);
       fillHalo(l, mask);
-      const std::vector<std::uint8_t> before = mask;
-      // Faces found in this layer are written, and only faces known before are read.
-      forEachRow(l, [&](std::ptrdiff_t row, int, int) {
-        for (auto f = row; f < row + l.faceEnd(0); ++f) {
-          if (before[f]) continue;
+      // Faces found in this layer are written, and only faces known before are read: these are marked afterwards.
+#pragma omp parallel for schedule(static)
+      for (int k = 0; k < planes; ++k) {
+        found[k].clear();
+        std::size_t left = 0;
+        for (const auto f : missing[k]) {
           double sum = 0.0;
           int count = 0;
           for (int b = 0; b < 3; ++b) {
             for (const auto g : {f - l.stride[b], f + l.stride[b]}) {
-              if (!before[g]) continue;
+              if (!mask[g]) continue;
               sum += u[g];
               ++count;
             }
           }
-          if (count == 0) continue;
+          if (count == 0) {
+            missing[k][left++] = f;
+            continue;
+          }
           u[f] = sum / count;
-          mask[f] = 1;
+          found[k].push_back(f);
         }
-      });
+        missing[k].resize(left);
+      }
+      bool any = false;
+      for (int k = 0; k < planes; ++k) {
+        for (const auto f : found[k]) mask[f] = 1;
+        any = any || !found[k].empty();
+      }
+      if (!any) break;
     }
     fillHalo(l, mask);
     mirrorIntoHalo(l, a, no_slip, u);
@@ -82,6 +122,7 @@ void extrapolateVelocity(const Lattice& l, int layers, bool no_slip, std::array<
 void advectVelocity(const MacGrid& grid, const FaceField<double>& velocity,
                     const std::array<std::vector<std::uint8_t>, 3>& known, double dt, FaceField<double>& moved) {
   const Lattice& l = grid.lattice;
+  const double scale = dt / grid.h;
   for (int a = 0; a < 3; ++a) {
     moved[a].assign(l.size, 0.0);
     const Eigen::Vector3d offset = nodeOffset(a);
@@ -89,7 +130,8 @@ void advectVelocity(const MacGrid& grid, const FaceField<double>& velocity,
       for (int i = 0; i < l.faceEnd(0); ++i) {
         if (!known[a][row + i]) continue;
         const Eigen::Vector3d x = Eigen::Vector3d(i, j, k) + offset;
-        const Eigen::Vector3d foot = traceBack(grid, velocity, x, dt);
+        const Eigen::Vector3d v = velocityAtFace(l, velocity, a, row + i);
+        const Eigen::Vector3d foot = traceBack(l, velocity, x, v, scale);
         moved[a][row + i] = sampleCubic(l, velocity[a], foot - offset, true);
       }
     });
@@ -123,17 +165,21 @@ void advectAccelerated(const MacGrid& grid, const FaceField<double>& velocity, c
 }
 
 void advectCells(const MacGrid& grid, const FaceField<double>& velocity, const std::vector<double>& field, double dt,
-                 std::vector<double>& moved) {
+                 std::vector<double>& moved, double band) {
   const Lattice& l = grid.lattice;
+  const double scale = dt / grid.h;
   moved = field;
   const Eigen::Vector3d offset = nodeOffset(-1);
 #pragma omp parallel for schedule(static)
   for (int k = 0; k < l.n[2]; ++k) {
     for (int j = 0; j < l.n[1]; ++j) {
       for (int i = 0; i < l.n[0]; ++i) {
+        const auto c = l.index(i, j, k);
+        if (std::abs(field[c]) > band) continue;
         const Eigen::Vector3d x = Eigen::Vector3d(i, j, k) + offset;
-        const Eigen::Vector3d foot = traceBack(grid, velocity, x, dt);
-        moved[l.index(i, j, k)] = sampleCubic(l, field, foot - offset, false);
+        const Eigen::Vector3d v = velocityAtCell(l, velocity, c);
+        const Eigen::Vector3d foot = traceBack(l, velocity, x, v, scale);
+        moved[c] = sampleCubic(l, field, foot - offset, false);
       }
     }
   }

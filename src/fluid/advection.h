@@ -3,6 +3,7 @@
 // at the foot. Stable at any CFL number.
 
 #include <cstdint>
+#include <limits>
 
 #include "fluid/mac_grid.h"
 #include "solve/staggered_operator.h"
@@ -25,9 +26,10 @@ void advectAccelerated(const MacGrid& grid, const FaceField<double>& velocity, c
                        const std::array<std::vector<std::uint8_t>, 3>& known, double dt, FaceField<double>& moved,
                        FaceField<double>& gained);
 
-// A cell-centred field moved by the velocity over dt. Halos must be filled.
+// A cell-centred field moved by the velocity over dt. Halos must be filled. Cells whose value is larger than `band` in
+// size keep it.
 void advectCells(const MacGrid& grid, const FaceField<double>& velocity, const std::vector<double>& field, double dt,
-                 std::vector<double>& moved);
+                 std::vector<double>& moved, double band = std::numeric_limits<double>::infinity());
 
 // Velocity at a point, position in cell widths from the tank's corner.
 Eigen::Vector3d velocityAt(const Lattice& lattice, const FaceField<double>& velocity, const Eigen::Vector3d& position);

@@ -14,6 +14,9 @@ namespace {
 constexpr double kFar = 1e3;               // cell widths
 constexpr double kTravelToRedistance = 1.0;  // cells
 constexpr double kLargestShift = 0.1;      // cells in one correction
+// Half-width, in cells, of the band around the surface in which the level set is a distance; beyond it is just as large
+// as that, which is further than anyone looks.
+constexpr double kBand = 6.0;
 constexpr double kSampleBeyondSolid = 0.75;  // cells: outside, where the value is the liquid's own
 
 // Solution of the discrete eikonal equation at a cell from its nearest neighbours along each axis.
@@ -75,7 +78,7 @@ FreeSurface::FreeSurface(const MacGrid& grid, double fill_height, const std::vec
 
 void FreeSurface::advect(const FaceField<double>& velocity, double dt, double maximum_speed) {
   if (full_ || empty_ || maximum_speed == 0.0) return;
-  advectCells(grid_, velocity, distance_, dt, scratch_);
+  advectCells(grid_, velocity, distance_, dt, scratch_, kBand);
   distance_.swap(scratch_);
   extendIntoHalo(grid_.lattice, distance_);
   travelled_ += maximum_speed * dt / grid_.h;
@@ -117,25 +120,28 @@ void FreeSurface::redistance() {
       }
     }
   }
-  for (int sweep = 0; sweep < 8; ++sweep) {
-    const bool fx = sweep & 1, fy = sweep & 2, fz = sweep & 4;
-    for (int kk = 0; kk < l.n[2]; ++kk) {
-      const int k = fz ? l.n[2] - 1 - kk : kk;
-      for (int jj = 0; jj < l.n[1]; ++jj) {
-        const int j = fy ? l.n[1] - 1 - jj : jj;
-        for (int ii = 0; ii < l.n[0]; ++ii) {
-          const int i = fx ? l.n[0] - 1 - ii : ii;
+  // A cell's neighbours are all of the other colour, so each colour at once, by any number of threads. Information
+  // crosses a cell in each half-pass, and each adds 1/sqrt(3) at least to the distance.
+  const int passes = static_cast<int>(std::ceil(kBand * std::sqrt(3.0))) + 1;
+  for (int pass = 0; pass < passes; ++pass) {
+    const double settled = (pass - 1) / std::sqrt(3.0);
+    fillHalo(l, next);
+#pragma omp parallel for schedule(static)
+    for (int k = 0; k < l.n[2]; ++k) {
+      for (int j = 0; j < l.n[1]; ++j) {
+        for (int i = (j + k + pass) & 1; i < l.n[0]; i += 2) {
           const auto c = l.index(i, j, k);
-          if (fixed[c]) continue;
+          if (fixed[c] || next[c] <= settled) continue;
           std::array<double, 3> d;
           for (int a = 0; a < 3; ++a) d[a] = std::min(next[c - l.stride[a]], next[c + l.stride[a]]);
+          if (std::min({d[0], d[1], d[2]}) >= kBand) continue;
           next[c] = std::min(next[c], eikonal(d));
         }
       }
     }
-    fillHalo(l, next);
   }
-  for (std::size_t c = 0; c < l.size; ++c) next[c] = distance_[c] < 0.0 ? -next[c] : next[c];
+#pragma omp parallel for simd schedule(static)
+  for (std::size_t c = 0; c < l.size; ++c) next[c] = std::copysign(std::min(next[c], kBand), distance_[c]);
   distance_.swap(next);
   extendIntoHalo(l, distance_);
 }
@@ -165,51 +171,79 @@ void FreeSurface::extendIntoSolids(const std::vector<double>& solid_distance) {
   extendIntoHalo(l, distance_);
 }
 
-double FreeSurface::shiftedVolume(double shift, const std::vector<double>& cell_fluid) const {
+// The cells that the surface cuts when shifted by up to `margin`, plane by plane, and what the others hold.
+FreeSurface::CutCells FreeSurface::findCutCells(double margin, const std::vector<double>& cell_fluid) const {
   const Lattice& l = grid_.lattice;
-  // One sum per slab, added in order: the same bits at any thread count.
-  std::vector<double> slabs(l.n[2], 0.0);
+  CutCells out;
+  out.planes.resize(l.n[2]);
 #pragma omp parallel for schedule(static)
   for (int k = 0; k < l.n[2]; ++k) {
+    CutPlane& plane = out.planes[k];
     for (int j = 0; j < l.n[1]; ++j) {
-      for (int i = 0; i < l.n[0]; ++i) {
-        const auto c = l.index(i, j, k);
-        const double d = distance_[c] + shift;
-        if (d > 1.0 || cell_fluid[c] == 0.0) continue;
-        double part = 1.0;
-        if (d > -1.0) {
-          Eigen::Vector3d slope;
-          for (int a = 0; a < 3; ++a) slope[a] = distance_[c + l.stride[a]] - distance_[c - l.stride[a]];
-          part = insideFraction(d, slope, 1.0);
+      const auto row = l.index(0, j, k);
+      for (auto c = row; c < row + l.n[0]; ++c) {
+        const double d = distance_[c];
+        if (d > 1.0 + margin || cell_fluid[c] == 0.0) continue;
+        if (d <= -1.0 - margin) {
+          plane.full += cell_fluid[c];
+          continue;
         }
-        slabs[k] += part * cell_fluid[c];
+        Eigen::Vector3d slope;
+        for (int a = 0; a < 3; ++a) slope[a] = distance_[c + l.stride[a]] - distance_[c - l.stride[a]];
+        plane.cells.push_back({d, cell_fluid[c], slope});
       }
     }
   }
+  return out;
+}
+
+// One sum per plane, added in order: the same bits at any thread count.
+double FreeSurface::shiftedVolume(double shift, CutCells& cut) const {
+  const int planes = static_cast<int>(cut.planes.size());
+#pragma omp parallel for schedule(static)
+  for (int k = 0; k < planes; ++k) {
+    CutPlane& plane = cut.planes[k];
+    plane.sum = plane.full;
+    for (const CutCell& cell : plane.cells) {
+      const double d = cell.distance + shift;
+      if (d > 1.0) continue;
+      plane.sum += (d > -1.0 ? insideFraction(d, cell.slope, 1.0) : 1.0) * cell.fluid;
+    }
+  }
   double sum = 0.0;
-  for (const double slab : slabs) sum += slab;
+  for (const CutPlane& plane : cut.planes) sum += plane.sum;
   return sum * grid_.cellVolume();
 }
 
 double FreeSurface::volume(const std::vector<double>& cell_fluid) const {
   if (empty_) return 0.0;
-  return shiftedVolume(0.0, cell_fluid);
+  CutCells cut = findCutCells(0.0, cell_fluid);
+  return shiftedVolume(0.0, cut);
 }
 
 double FreeSurface::correctVolume(double target, const std::vector<double>& cell_fluid) {
   if (full_ || empty_) return 0.0;
-  const double before = volume(cell_fluid);
+  constexpr double kStep = 1e-3;
+  CutCells cut = findCutCells(kLargestShift + kStep, cell_fluid);
+  const double before = shiftedVolume(0.0, cut);
   double shift = 0.0;
   double v = before;
+  double slope = 0.0;
   for (int it = 0; it < 8 && std::abs(v - target) > 1e-10 * target; ++it) {
-    constexpr double kStep = 1e-3;
-    const double slope = (shiftedVolume(shift + kStep, cell_fluid) - shiftedVolume(shift - kStep, cell_fluid)) / (2.0 * kStep);
+    if (it == 0) {
+      slope = (shiftedVolume(shift + kStep, cut) - shiftedVolume(shift - kStep, cut)) / (2.0 * kStep);
+    }
     if (!(slope < 0.0)) break;
-    shift = std::clamp(shift - (v - target) / slope, -kLargestShift, kLargestShift);
-    v = shiftedVolume(shift, cell_fluid);
+    const double next = std::clamp(shift - (v - target) / slope, -kLargestShift, kLargestShift);
+    const double volume = shiftedVolume(next, cut);
+    // From the second on, the secant.
+    if (next != shift) slope = (volume - v) / (next - shift);
+    shift = next;
+    v = volume;
   }
   if (shift == 0.0) return 0.0;
-  for (double& d : distance_) d += shift;
+#pragma omp parallel for simd schedule(static)
+  for (std::size_t c = 0; c < distance_.size(); ++c) distance_[c] += shift;
   return v - before;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // The liquid's surface as a level set: signed distance in cell widths at cell centres, negative in the liquid, moved by the
-// velocity and kept a distance by fast sweeping (Zhao 2005, Math. Comput. 74, 603).
+// velocity and kept a distance, in a band around the surface, by Gauss-Seidel on the upwind eikonal equation
+// (Zhao 2005, Math. Comput. 74, 603), its cells in two colours.
 //
 // Volume: the level set is shifted, by a fraction of a percent of a cell, to the volume that the liquid has had from the
 // start; how much is reported. What detaches below the grid's resolution thus returns to the pool.
@@ -41,8 +42,23 @@ class FreeSurface {
   Eigen::Vector3d normal(std::ptrdiff_t cell) const;
 
  private:
+  struct CutCell {
+    double distance = 0.0;
+    double fluid = 0.0;
+    Eigen::Vector3d slope = Eigen::Vector3d::Zero();
+  };
+  struct CutPlane {
+    std::vector<CutCell> cells;
+    double full = 0.0;  // cells, of those that lie in the liquid
+    double sum = 0.0;
+  };
+  struct CutCells {
+    std::vector<CutPlane> planes;
+  };
+
   void redistance();
-  double shiftedVolume(double shift, const std::vector<double>& cell_fluid) const;
+  CutCells findCutCells(double margin, const std::vector<double>& cell_fluid) const;
+  double shiftedVolume(double shift, CutCells& cut) const;
 
   MacGrid grid_;
   bool full_ = false;

@@ -2,6 +2,7 @@
 // Sampling of staggered fields between their nodes. Positions in cell widths from the tank's corner.
 
 #include <Eigen/Dense>
+#include <array>
 #include <vector>
 
 #include "solve/lattice.h"
@@ -17,6 +18,10 @@ inline Eigen::Vector3d nodeOffset(int face_axis) {
 
 // Trilinear; positions are clamped to the tank along axes with walls, wrapped along periodic ones.
 double sampleLinear(const Lattice& lattice, const std::vector<double>& field, const Eigen::Vector3d& node_position);
+
+// All three components of a face-normal velocity at a point; `position` from the tank's corner. Trilinear.
+Eigen::Vector3d sampleVelocity(const Lattice& lattice, const std::array<std::vector<double>, 3>& velocity,
+                               const Eigen::Vector3d& position);
 
 // Tricubic (Lagrange, fourth order), linear where the stencil would leave the field. `limited`: kept within
 // the range of its stencil but for the overshoot of a smooth extremum, so that jumps do not ring.

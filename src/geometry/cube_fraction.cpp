@@ -11,11 +11,18 @@ double insideFraction(double distance, const Eigen::Vector3d& gradient, double w
   const double total = slope.sum();
   if (!(total > 0.0)) return distance < 0.0 ? 1.0 : 0.0;
   // The plane n . x = alpha in the unit cube with n >= 0, sum n = 1; the solid is below it.
-  std::array<double, 3> n = {slope[0] / total, slope[1] / total, slope[2] / total};
-  std::sort(n.begin(), n.end());
   const double alpha = 0.5 - distance * gradient.norm() / (width * total);
   if (alpha <= 0.0) return 0.0;
   if (alpha >= 1.0) return 1.0;
+  std::array<double, 3> n = {slope[0] / total, slope[1] / total, slope[2] / total};
+  const auto order = [&](int i, int j) {
+    const double less = std::min(n[i], n[j]);
+    n[j] = std::max(n[i], n[j]);
+    n[i] = less;
+  };
+  order(0, 1);
+  order(1, 2);
+  order(0, 1);
   const bool low = alpha <= 0.5;
   const double a = low ? alpha : 1.0 - alpha;
   const double n1 = n[0], n2 = n[1], n3 = n[2], n12 = n1 + n2;

@@ -22,6 +22,7 @@ Vector6d freeTwist(const RigidBody& body, const Vector3d& gravity, const Wrench&
 }
 
 void advancePose(RigidBody& body, double dt) {
+  if (body.motion == BodyMotion::kPrescribed && body.prescribed.in_place) return;
   body.p_WBcm += dt * body.twist.head<3>();
   body.q_WB = (exponential(dt * body.twist.tail<3>()) * body.q_WB).normalized();
 }

@@ -109,11 +109,12 @@ void readMotion(const YamlMap& map, BodyDescription& body, Violations& violation
   }
   if (motion != "prescribed") return;
   const YamlMap prescribed(map.get("prescribed"), map.path("prescribed"),
-                           {"twist", "amplitude", "frequency", "phase"}, violations);
+                           {"twist", "amplitude", "frequency", "phase", "in_place"}, violations);
   prescribed.read<6>("twist", body.prescribed.twist);
   prescribed.read<6>("amplitude", body.prescribed.amplitude);
   prescribed.read("frequency", body.prescribed.frequency, Range::kNotNegative);
   prescribed.read("phase", body.prescribed.phase, Range::kFinite);
+  body.prescribed.in_place = prescribed.readWord("in_place", "false", {"false", "true"}) == "true";
   if (!body.prescribed.amplitude.isZero(0.0) && body.prescribed.frequency == 0.0) {
     prescribed.fail("amplitude", "a frequency > 0 beside it");
   }

@@ -59,6 +59,8 @@ struct PrescribedMotion {
   Eigen::Matrix<double, 6, 1> amplitude = Eigen::Matrix<double, 6, 1>::Zero();  // m (0..2), rad (3..5)
   double frequency = 0.0;                                                       // Hz
   double phase = 0.0;                                                           // rad
+  // The surface moves so, the body itself stays where it is: a belt, a moving lid, a drum that turns.
+  bool in_place = false;
 };
 
 struct LinkFrame {

@@ -118,7 +118,6 @@ TEST(StaggeredProjections, RandomContactsObeyCoulombsLaw) {
   // Random couplings of normals and tangents are harsher than bodies' own.
   EXPECT_GE(solved, 54);
   EXPECT_GE(staggered, 45);
-  printf("%d %d\n", solved, staggered);
 }
 
 TEST(StaggeredProjections, SweepsTakeOverWhereAlternationCycles) {

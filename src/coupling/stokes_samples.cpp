@@ -1,0 +1,40 @@
+#include "coupling/stokes_samples.h"
+
+namespace monolith {
+
+FaceKinds findFaceKinds(const Lattice& l, const StokesGeometry& g, const StaggeredCoefficients<double>& c) {
+  FaceKinds kinds;
+  for (int a = 0; a < 3; ++a) {
+    kinds[a].resize(l.size);
+    const double* mass = c.mass[a].data();
+    const double* distance = (*g.solid_distance)[a].data();
+    const double* fluid = (*g.fluid)[a].data();
+    FaceKind* kind = kinds[a].data();
+#pragma omp parallel for simd schedule(static)
+    for (std::size_t f = 0; f < l.size; ++f) {
+      const bool solid = distance[f] <= 0.0;
+      const FaceKind still = solid | (fluid[f] <= 0.0) ? FaceKind::kSolid : FaceKind::kAir;
+      const FaceKind moving = solid ? FaceKind::kSliver : FaceKind::kFluid;
+      kind[f] = mass[f] > 0.0 ? moving : still;
+    }
+  }
+  return kinds;
+}
+
+void SampleBuilder::markPlain(std::ptrdiff_t row, int width, std::vector<std::uint8_t>& mark) const {
+  mark.assign(width, 0);
+  std::uint8_t* out = mark.data();
+  for (int a = 0; a < 3; ++a) {
+    const FaceKind* kind = kinds_[a].data() + row;
+    const auto s = lattice.stride[a];
+    const auto sb = lattice.stride[(a + 1) % 3];
+    const auto sc = lattice.stride[(a + 2) % 3];
+#pragma omp simd
+    for (int i = 0; i < width; ++i) {
+      out[i] |= static_cast<std::uint8_t>(kind[i]) | static_cast<std::uint8_t>(kind[i + s]) |
+                static_cast<std::uint8_t>(kind[i - sb]) | static_cast<std::uint8_t>(kind[i - sc]);
+    }
+  }
+}
+
+}  // namespace monolith

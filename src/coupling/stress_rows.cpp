@@ -1,0 +1,130 @@
+// The bodies' rows of the fitted gradient: buildBodyRows() of stokes_coefficients.h.
+
+#include "coupling/stokes_samples.h"
+
+namespace monolith {
+namespace {
+
+// Collects the rows of the bodies sample by sample.
+class RowBuilder {
+ public:
+  RowBuilder(const SampleBuilder& samples, const SolidFractions& solids, const std::vector<RigidBody>& bodies, double h)
+      : samples_(samples), solids_(solids), bodies_(bodies), h_(h) {}
+
+  // The solid ends of a segment of component `axis` from face a at x_a to face b at x_b = x_a + h along `along`, as
+  // they enter factor * (U_b - U_a).
+  void addSegment(int axis, std::ptrdiff_t a, std::ptrdiff_t b, const Eigen::Vector3d& x_a, int along, double factor,
+                  const FittedSegment& s, std::ptrdiff_t sample, std::vector<BodyRow>& out) const {
+    Eigen::Vector3d x_b = x_a;
+    x_b[along] += h_;
+    const bool solid_a = isSolid(samples_.kind(axis, a));
+    const bool solid_b = isSolid(samples_.kind(axis, b));
+    Eigen::Vector3d surface = x_a;
+    if (!s.both_solid) surface[along] += (solid_a ? 1.0 - s.theta : s.theta) * h_;
+    if (solid_a) addEnd(axis, a, x_a, s.both_solid ? x_a : surface, -factor, sample, out);
+    if (solid_b) addEnd(axis, b, x_b, s.both_solid ? x_b : surface, factor, sample, out);
+  }
+
+ private:
+  // A solid end's velocity is the body's at `target`. A sliver's unknown already stands for it at the face itself.
+  void addEnd(int axis, std::ptrdiff_t f, const Eigen::Vector3d& x_face, const Eigen::Vector3d& target, double factor,
+              std::ptrdiff_t sample, std::vector<BodyRow>& out) const {
+    const int owner = solids_.owner[axis][f];
+    if (owner < 0) return;
+    Vector6d row = velocityRow(axis, target, bodies_[owner].p_WBcm);
+    if (samples_.kind(axis, f) == FaceKind::kSliver) row -= velocityRow(axis, x_face, bodies_[owner].p_WBcm);
+    if (row.cwiseAbs().maxCoeff() == 0.0) return;
+    out.push_back({sample, owner, factor * row});
+  }
+
+  const SampleBuilder& samples_;
+  const SolidFractions& solids_;
+  const std::vector<RigidBody>& bodies_;
+  double h_;
+};
+
+// Cells, and those beyond the last ones, from which the samples reach into the box of a body.
+std::vector<char> nearBodies(const Lattice& l, const SolidFractions& solids) {
+  std::vector<char> near(l.size, 0);
+  for (const BodyFractions& f : solids.bodies) {
+    for (int k = -1; k <= f.count[2]; ++k) {
+      for (int j = -1; j <= f.count[1]; ++j) {
+        for (int i = -1; i <= f.count[0]; ++i) {
+          int at[3] = {f.low[0] + i, f.low[1] + j, f.low[2] + k};
+          bool inside = true;
+          for (int a = 0; a < 3; ++a) {
+            if (l.periodic[a]) at[a] = (at[a] % l.n[a] + l.n[a]) % l.n[a];
+            inside = inside && at[a] >= 0 && at[a] < l.faceEnd(a);
+          }
+          if (inside) near[l.index(at[0], at[1], at[2])] = 1;
+        }
+      }
+    }
+  }
+  return near;
+}
+
+}  // namespace
+
+void buildBodyRows(const MacGrid& grid, const SolidFractions& solids, const std::vector<RigidBody>& bodies,
+                   const StokesGeometry& geometry, const StaggeredCoefficients<double>& coefficients, BodyRows& out) {
+  const Lattice& l = grid.lattice;
+  const double h = grid.h;
+  out = BodyRows();
+
+  buildDivergenceRows(grid, solids, bodies, coefficients, out);
+  if (!coefficients.viscous) return;
+
+  // J_s: every sample with an end in a body.
+  const SampleBuilder samples(l, geometry, coefficients);
+  const RowBuilder rows(samples, solids, bodies, h);
+  const int end_j = l.faceEnd(1);
+  const int end_k = l.faceEnd(2);
+  std::vector<BodyRows> slabs(end_k);
+  const std::vector<char> near = nearBodies(l, solids);
+#pragma omp parallel for schedule(static)
+  for (int k = 0; k < end_k; ++k) {
+    BodyRows& slab = slabs[k];
+    for (int j = 0; j < end_j; ++j) {
+      for (int i = 0; i < l.faceEnd(0); ++i) {
+        const auto c = l.index(i, j, k);
+        // Nothing of a body within reach of the samples of this cell.
+        if (!near[c] || solids.cell_distance[c] > 2.5) continue;
+        for (int a = 0; a < 3; ++a) {
+          const auto sa = l.stride[a];
+          if (coefficients.normal[a][c] > 0.0) {
+            const FittedSegment s = samples.segment(a, c, c + sa);
+            rows.addSegment(a, c, c + sa, grid.faceCenter(a, i, j, k), a, 1.0, s, c, slab.normal[a]);
+          }
+          if (coefficients.drag[a][c] > 0.0 && solids.owner[a][c] >= 0) {
+            const int owner = solids.owner[a][c];
+            slab.drag[a].push_back({c, owner, velocityRow(a, grid.faceCenter(a, i, j, k), bodies[owner].p_WBcm)});
+          }
+        }
+        for (int p = 0; p < 3; ++p) {
+          const auto [a, b] = kShearPairs[p];
+          const auto sa = l.stride[a];
+          const auto sb = l.stride[b];
+          const double factor_a = coefficients.shear[p][0][c];
+          const double factor_b = coefficients.shear[p][1][c];
+          if (factor_a == 0.0 && factor_b == 0.0) continue;
+          Eigen::Vector3d x_a = grid.faceCenter(a, i, j, k);
+          x_a[b] -= h;
+          Eigen::Vector3d x_b = grid.faceCenter(b, i, j, k);
+          x_b[a] -= h;
+          rows.addSegment(a, c - sb, c, x_a, b, factor_a, samples.segment(a, c - sb, c), c, slab.shear[p]);
+          rows.addSegment(b, c - sa, c, x_b, a, factor_b, samples.segment(b, c - sa, c), c, slab.shear[p]);
+        }
+      }
+    }
+  }
+  for (const BodyRows& slab : slabs) {
+    for (int a = 0; a < 3; ++a) {
+      out.normal[a].insert(out.normal[a].end(), slab.normal[a].begin(), slab.normal[a].end());
+      out.shear[a].insert(out.shear[a].end(), slab.shear[a].begin(), slab.shear[a].end());
+      out.drag[a].insert(out.drag[a].end(), slab.drag[a].begin(), slab.drag[a].end());
+    }
+  }
+}
+
+}  // namespace monolith

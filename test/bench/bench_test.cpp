@@ -1,0 +1,76 @@
+// The benchmark program itself: on a small tank, as its users call it.
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <fstream>
+#include <string>
+
+#ifndef MONOLITH_BENCH
+#error "MONOLITH_BENCH is not defined"
+#endif
+
+namespace {
+
+struct Result {
+  int code = -1;
+  std::string output;  // both streams
+};
+
+Result run(const std::string& arguments) {
+  Result result;
+  std::FILE* program = popen((std::string(MONOLITH_BENCH) + " " + arguments + " 2>&1").c_str(), "r");
+  if (program == nullptr) return result;
+  char text[1000];
+  while (std::fgets(text, sizeof(text), program) != nullptr) result.output += text;
+  result.code = WEXITSTATUS(pclose(program));
+  return result;
+}
+
+TEST(Bench, WritesALineOfJsonWithEveryKey) {
+  const std::string file = testing::TempDir() + "bench.json";
+  const Result result =
+      run("--sizes 8,12 --threads 1 --viscous-number 1 --contacts 1 --repetitions 1 --against direct --json " + file);
+  ASSERT_EQ(result.code, 0) << result.output;
+  std::ifstream lines(file);
+  std::string line;
+  int count = 0;
+  while (std::getline(lines, line)) {
+    ++count;
+    for (const std::string key :
+         {"size", "threads", "viscous_number", "bodies", "contacts", "solver", "ms_per_step", "iterations",
+          "liquid_solves", "bytes_per_cell", "stage_ms", "advection", "contact", "geometry", "solve", "surface",
+          "bandwidth_share", "speedup", "cpu_ms", "commit", "machine", "true_error", "iteration_growth"}) {
+      EXPECT_NE(line.find("\"" + key + "\": "), std::string::npos) << key << " in " << line;
+    }
+    EXPECT_NE(line.find("\"good\": true"), std::string::npos) << line;
+    EXPECT_NE(line.find("\"contacts\": 1,"), std::string::npos) << line;
+    EXPECT_NE(line.find("\"bodies\": 2,"), std::string::npos) << line;
+    EXPECT_EQ(line.find("\"speedup\": null"), std::string::npos) << line;
+  }
+  EXPECT_EQ(count, 2);
+  std::remove(file.c_str());
+}
+
+TEST(Bench, SaysWhichOptionIsWrongAndWhatItExpects) {
+  const struct {
+    const char* arguments;
+    const char* says;
+  } wrong[] = {
+      {"--sizes 16,4", "--sizes '4': expected whole numbers from 8"},
+      {"--threads two", "--threads 'two': expected whole numbers from 1"},
+      {"--viscous-number -1", "--viscous-number '-1': expected numbers from 0"},
+      {"--against slow", "--against 'slow': expected fast, direct or reference"},
+      {"--json", "--json: expected a value"},
+      {"--quick 1", "unknown option '--quick'"},
+  };
+  for (const auto& [arguments, says] : wrong) {
+    const Result result = run(arguments);
+    EXPECT_EQ(result.code, 2) << arguments;
+    EXPECT_NE(result.output.find(says), std::string::npos) << result.output;
+  }
+  EXPECT_EQ(run("--help").code, 0);
+}
+
+}  // namespace

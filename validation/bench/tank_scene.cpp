@@ -1,0 +1,87 @@
+#include "tank_scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace monolith::bench {
+namespace {
+
+constexpr double kDensity = 1000.0;      // kg/m^3, of the liquid
+constexpr double kBodyDensity = 2000.0;  // kg/m^3
+constexpr double kTimeStep = 0.01;       // s
+constexpr double kFriction = 0.3;
+// Off the grid's symmetry, m.
+const Eigen::Vector3d kOffset(0.0131, -0.0073, 0.0057);
+
+BodyDescription makeBody(const std::string& name, Shape::Kind kind, double width, const Eigen::Vector3d& position) {
+  Shape shape;
+  shape.kind = kind;
+  shape.radius = 0.5 * width;
+  shape.box_size.setConstant(width);
+  shape.name = name;
+  BodyDescription body;
+  body.name = name;
+  body.shapes = {shape};
+  body.mass = kBodyDensity * volume(shape);
+  const double gyration2 = kind == Shape::Kind::kSphere ? 0.1 * width * width : width * width / 6.0;
+  body.inertia_Bcm = body.mass * gyration2 * Eigen::Matrix3d::Identity();
+  body.X_WB.translation() = position;
+  return body;
+}
+
+// Boxes (four contact points) and spheres (one) in columns of two; returns the height that they take up.
+double addResting(int contacts, std::vector<BodyDescription>& bodies) {
+  if (contacts == 0) return 0.0;
+  const int boxes = contacts / 4;
+  const int count = boxes + contacts % 4;
+  const int columns = (count + 1) / 2;
+  const int along = static_cast<int>(std::ceil(std::sqrt(columns)));
+  const double width = std::min(0.25, 0.6 / along);
+  for (int i = 0; i < count; ++i) {
+    const int column = i % columns, level = i / columns;
+    const Eigen::Vector3d position((column % along + 0.5) / along, (column / along + 0.5) / along,
+                                   (level + 0.5) * width);
+    const Eigen::Vector3d aside(kOffset[0], kOffset[1], 0.0);
+    bodies.push_back(makeBody("resting_" + std::to_string(i), i < boxes ? Shape::Kind::kBox : Shape::Kind::kSphere,
+                              width, position + aside));
+  }
+  return (count > columns ? 2.0 : 1.0) * width;
+}
+
+void addFree(int count, double low, double high, std::vector<BodyDescription>& bodies) {
+  if (count == 0) return;
+  const int along = static_cast<int>(std::ceil(std::cbrt(count) - 1e-9));
+  const double spacing_z = (high - low) / along;
+  const double width = std::min(0.25, 0.7 * std::min(1.0 / along, spacing_z));
+  for (int i = 0; i < count; ++i) {
+    const Eigen::Vector3d position((i % along + 0.5) / along, (i / along % along + 0.5) / along,
+                                   low + (i / (along * along) + 0.5) * spacing_z);
+    bodies.push_back(
+        makeBody("free_" + std::to_string(i), Shape::Kind::kSphere, width, position + 0.1 * width / 0.25 * kOffset));
+  }
+}
+
+}  // namespace
+
+Scene tankScene(const Case& wanted, double tolerance) {
+  Scene scene;
+  scene.name = "bench";
+  scene.source = "bench";
+  scene.tank.cell_width = 1.0 / wanted.size;
+  scene.time_step = kTimeStep;
+  const double h = scene.tank.cell_width;
+  scene.liquid.density = kDensity;
+  scene.liquid.dynamic_viscosity = wanted.viscous_number * kDensity * h * h / kTimeStep;
+  scene.liquid.fill_level = wanted.fill >= 1.0 ? scene.tank.size[2] : wanted.fill;
+  const double height = addResting(wanted.contacts, scene.bodies);
+  addFree(wanted.bodies, height, std::max(wanted.fill, height + 0.3), scene.bodies);
+  scene.contact.friction = kFriction;
+  scene.solver.name = wanted.solver;
+  scene.solver.threads = wanted.threads;
+  scene.solver.tolerance = tolerance;
+  scene.solver.maximum_iterations = 20000;
+  scene.solver.cfl = 1e3;  // one sub-step
+  return scene;
+}
+
+}  // namespace monolith::bench
