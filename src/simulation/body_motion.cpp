@@ -56,15 +56,11 @@ std::vector<char> closingBodies(const std::vector<RigidBody>& bodies, const std:
 
 namespace {
 
-// Where a point of the body goes.
-Vector3d carriedPoint(const RigidBody& from, const RigidBody& to, const Vector3d& point) {
-  return to.p_WBcm + to.q_WB * (from.q_WB.conjugate() * (point - from.p_WBcm));
-}
-
+// With the centres of mass: lever arms stay as they are where the gap is known.
 void movePoints(const std::vector<RigidBody>& from, const std::vector<RigidBody>& to, std::vector<Contact>& contacts) {
+  const auto shift = [&](int body) -> Vector3d { return to[body].p_WBcm - from[body].p_WBcm; };
   for (Contact& c : contacts) {
-    const Vector3d a = carriedPoint(from[c.body_a], to[c.body_a], c.point);
-    c.point = c.body_b == Contact::kWall ? a : 0.5 * (a + carriedPoint(from[c.body_b], to[c.body_b], c.point));
+    c.point += c.body_b == Contact::kWall ? shift(c.body_a) : Vector3d(0.5 * (shift(c.body_a) + shift(c.body_b)));
   }
 }
 
@@ -130,9 +126,9 @@ void finishEuler(const std::vector<Vector6d>& twists, double dt, std::vector<Rig
   }
 }
 
-void finishSecondOrder(const BodyPlan& plan, const std::vector<Contact>& contacts, const std::vector<Vector6d>& twists,
-                       double dt, std::vector<RigidBody>& bodies) {
-  const double part = partBefore(bodies, contacts, plan.closing, twists, dt);
+void finishSecondOrder(const BodyPlan& plan, const std::vector<Contact>& contacts, bool rebound,
+                       const std::vector<Vector6d>& twists, double dt, std::vector<RigidBody>& bodies) {
+  const double part = rebound ? partBefore(bodies, contacts, plan.closing, twists, dt) : 0.0;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     RigidBody& body = bodies[b];
     if (body.motion == BodyMotion::kPrescribed) {

@@ -41,9 +41,9 @@ BodyPlan planSecondOrder(const std::vector<RigidBody>& bodies, const Eigen::Vect
 
 // Twists as solved for; moves the bodies.
 void finishEuler(const std::vector<Vector6d>& twists, double dt, std::vector<RigidBody>& bodies);
-// Closing bodies move by their new twist, for which non-penetration was solved, and by as much of the old one, at most half,
-// as leaves the contacts open: a ball that rebounds does so from the surface.
-void finishSecondOrder(const BodyPlan& plan, const std::vector<Contact>& contacts, const std::vector<Vector6d>& twists,
-                       double dt, std::vector<RigidBody>& bodies);
+// Closing bodies move by their new twist, for which non-penetration was solved; where some are to rebound, also by as much
+// of the old one, at most half, as leaves the contacts open: so that they do it from the surface, not from above it.
+void finishSecondOrder(const BodyPlan& plan, const std::vector<Contact>& contacts, bool rebound,
+                       const std::vector<Vector6d>& twists, double dt, std::vector<RigidBody>& bodies);
 
 }  // namespace monolith

@@ -217,7 +217,10 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
 
   takeMeans(w, liquid_before);
   if (w.order == 2) {
-    finishSecondOrder(plan, contacts, state.coupled.twists, dt, state.bodies);
+    const bool rebound = std::any_of(contacts.begin(), contacts.end(), [&](const Contact& contact) {
+      return closing[contact.body_a] && laws.of(contact.body_a, contact.body_b).restitution > 0.0;
+    });
+    finishSecondOrder(plan, contacts, rebound, state.coupled.twists, dt, state.bodies);
   } else {
     finishEuler(state.coupled.twists, dt, state.bodies);
   }
