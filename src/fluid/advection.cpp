@@ -155,7 +155,7 @@ void advectAccelerated(const MacGrid& grid, const FaceField<double>& velocity, c
       for (int i = 0; i < l.faceEnd(0); ++i) {
         if (!known[a][row + i]) continue;
         const Eigen::Vector3d x = Eigen::Vector3d(i, j, k) + offset;
-        const Eigen::Vector3d near = x - scale * velocityAt(l, mean, x);
+        const Eigen::Vector3d near = x - scale * velocityAtFace(l, mean, a, row + i);
         const Eigen::Vector3d node = x - scale * velocityAt(l, mean, near) - offset;
         moved[a][row + i] = sampleCubic(l, velocity[a], node, true);
         gained[a][row + i] = sampleLinear(l, acceleration[a], node);

@@ -1,5 +1,7 @@
 #include "simulation/body_motion.h"
 
+#include <algorithm>
+
 #include "rigid/rotation.h"
 
 namespace monolith {
@@ -7,57 +9,58 @@ namespace {
 
 using Eigen::Vector3d;
 
-double approach(const std::vector<RigidBody>& bodies, const Contact& c) {
+// Of the gap, m/s.
+double gapRate(const std::vector<RigidBody>& bodies, const Contact& c) {
   double rate = bodies[c.body_a].velocityAt(c.point).dot(c.normal);
   if (c.body_b != Contact::kWall) rate -= bodies[c.body_b].velocityAt(c.point).dot(c.normal);
   return rate;
 }
 
-// Marks the bodies of a contact that fits, and all that hang together with them by contacts.
-template <class Predicate>
-std::vector<char> markBodies(std::size_t count, const std::vector<Contact>& contacts, const Predicate& fits) {
-  std::vector<char> marked(count, 0);
+// How much of the velocity before an impact the motion may have, in place of that after it.
+double partBefore(const std::vector<RigidBody>& before, const std::vector<Contact>& contacts,
+                  const std::vector<char>& closing, const std::vector<Vector6d>& twists, double dt) {
+  std::vector<RigidBody> after = before;
+  for (std::size_t b = 0; b < after.size(); ++b) after[b].twist = twists[b];
+  double part = 0.5;
   for (const Contact& c : contacts) {
-    if (!fits(c)) continue;
-    marked[c.body_a] = 1;
-    if (c.body_b != Contact::kWall) marked[c.body_b] = 1;
+    if (!closing[c.body_a]) continue;
+    const double rate = gapRate(after, c);
+    const double change = gapRate(before, c) - rate;
+    if (change >= 0.0) continue;
+    part = std::min(part, std::max(0.0, (std::max(c.gap, 0.0) + dt * rate) / (-dt * change)));
   }
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (const Contact& c : contacts) {
-      if (c.body_b == Contact::kWall || marked[c.body_a] == marked[c.body_b]) continue;
-      marked[c.body_a] = marked[c.body_b] = 1;
-      changed = true;
-    }
-  }
-  return marked;
+  return part;
 }
 
 }  // namespace
 
 std::vector<char> closingBodies(const std::vector<RigidBody>& bodies, const std::vector<Contact>& contacts, double dt,
                                 double gap_tolerance) {
-  return markBodies(bodies.size(), contacts, [&](const Contact& c) {
-    const double rate = approach(bodies, c);
-    return rate < 0.0 && c.gap + dt * rate < -gap_tolerance;
-  });
-}
-
-std::vector<char> touchingBodies(std::size_t count, const std::vector<Contact>& contacts, double gap_tolerance) {
-  return markBodies(count, contacts, [&](const Contact& c) { return c.gap <= gap_tolerance; });
+  std::vector<char> closing(bodies.size(), 0);
+  for (const Contact& c : contacts) {
+    const double rate = gapRate(bodies, c);
+    if (rate >= 0.0 || c.gap + dt * rate >= -gap_tolerance) continue;
+    closing[c.body_a] = 1;
+    if (c.body_b != Contact::kWall) closing[c.body_b] = 1;
+  }
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const Contact& c : contacts) {
+      if (c.body_b == Contact::kWall || closing[c.body_a] == closing[c.body_b]) continue;
+      closing[c.body_a] = closing[c.body_b] = 1;
+      changed = true;
+    }
+  }
+  return closing;
 }
 
 namespace {
 
-// Where a point of the body goes.
-Vector3d carriedPoint(const RigidBody& from, const RigidBody& to, const Vector3d& point) {
-  return to.p_WBcm + to.q_WB * (from.q_WB.conjugate() * (point - from.p_WBcm));
-}
-
+// With the centres of mass: lever arms stay as they are where the gap is known.
 void movePoints(const std::vector<RigidBody>& from, const std::vector<RigidBody>& to, std::vector<Contact>& contacts) {
+  const auto shift = [&](int body) -> Vector3d { return to[body].p_WBcm - from[body].p_WBcm; };
   for (Contact& c : contacts) {
-    const Vector3d a = carriedPoint(from[c.body_a], to[c.body_a], c.point);
-    c.point = c.body_b == Contact::kWall ? a : 0.5 * (a + carriedPoint(from[c.body_b], to[c.body_b], c.point));
+    c.point += c.body_b == Contact::kWall ? shift(c.body_a) : Vector3d(0.5 * (shift(c.body_a) + shift(c.body_b)));
   }
 }
 
@@ -79,11 +82,10 @@ BodyPlan planEuler(const std::vector<RigidBody>& bodies, const Vector3d& gravity
 BodyPlan planSecondOrder(const std::vector<RigidBody>& bodies, const Vector3d& gravity,
                          const std::vector<Wrench>& wrenches, const BodyPast& past, double time,
                          const StepWeights& weights, const std::vector<char>& closing,
-                         const std::vector<char>& by_euler, std::vector<Contact>& contacts) {
+                         std::vector<Contact>& contacts) {
   const double dt = weights.dt;
   BodyPlan plan;
   plan.bodies = bodies;
-  plan.by_euler = by_euler;
   plan.closing = closing;
   plan.free_twists.assign(bodies.size(), Vector6d::Zero());
   plan.motion.resize(bodies.size());
@@ -103,7 +105,7 @@ BodyPlan planSecondOrder(const std::vector<RigidBody>& bodies, const Vector3d& g
     Wrench held = wrenches[b];
     held.force += weights.carry * past.liquid[b].force;
     held.torque += weights.carry * past.liquid[b].torque;
-    if (plan.by_euler[b]) {
+    if (plan.closing[b]) {
       plan.free_twists[b] = freeTwist(body, gravity, held, dt);
       continue;
     }
@@ -124,18 +126,17 @@ void finishEuler(const std::vector<Vector6d>& twists, double dt, std::vector<Rig
   }
 }
 
-void finishSecondOrder(const BodyPlan& plan, const std::vector<Vector6d>& twists, double dt,
-                       std::vector<RigidBody>& bodies) {
+void finishSecondOrder(const BodyPlan& plan, const std::vector<Contact>& contacts, bool rebound,
+                       const std::vector<Vector6d>& twists, double dt, std::vector<RigidBody>& bodies) {
+  const double part = rebound ? partBefore(bodies, contacts, plan.closing, twists, dt) : 0.0;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     RigidBody& body = bodies[b];
     if (body.motion == BodyMotion::kPrescribed) {
       body.p_WBcm = plan.bodies[b].p_WBcm;
       body.q_WB = plan.bodies[b].q_WB;
       body.twist = twists[b];
-    } else if (plan.by_euler[b]) {
-      // What touches and does not close goes on touching by the mean of both twists, too, and slides or rolls as far as
-      // it should.
-      body.twist = plan.closing[b] ? twists[b] : Vector6d(0.5 * (body.twist + twists[b]));
+    } else if (plan.closing[b]) {
+      body.twist = part * body.twist + (1.0 - part) * twists[b];
       advancePose(body, dt);
       body.twist = twists[b];
     } else if (body.motion == BodyMotion::kFree) {

@@ -14,16 +14,12 @@ struct BodyPlan {
   std::vector<Vector6d> free_twists;  // v* of free bodies, the prescribed twist of others
   std::vector<FreeMotion> motion;     // second order only
   std::vector<char> closing;          // likewise
-  std::vector<char> by_euler;         // likewise: bodies that are in the solve where backward Euler has them
 };
 
 // Bodies that close a gap of the contacts within dt by more than the tolerance (m), and those that share a contact with
 // them: their velocities are going to jump.
 std::vector<char> closingBodies(const std::vector<RigidBody>& bodies, const std::vector<Contact>& contacts, double dt,
                                 double gap_tolerance);
-
-// Bodies with a gap of at most the tolerance (m), and those that share a contact with them.
-std::vector<char> touchingBodies(std::size_t count, const std::vector<Contact>& contacts, double gap_tolerance);
 
 // Backward Euler: bodies stay where they are until they are solved for.
 BodyPlan planEuler(const std::vector<RigidBody>& bodies, const Eigen::Vector3d& gravity,
@@ -36,17 +32,18 @@ struct BodyPast {
   std::vector<Wrench> contact;         // mean
 };
 
-// Second order. Bodies that are closing or touch are in the solve where they are at the start: only then do
-// non-penetration and friction hold at the points where they touch; those that are closing also move as backward Euler
-// has it. Points of the other contacts go with the bodies.
+// Second order. Bodies that are closing stay where they are until they are solved for. Points of the contacts go with the
+// bodies.
 BodyPlan planSecondOrder(const std::vector<RigidBody>& bodies, const Eigen::Vector3d& gravity,
                          const std::vector<Wrench>& wrenches, const BodyPast& past, double time,
                          const StepWeights& weights, const std::vector<char>& closing,
-                         const std::vector<char>& by_euler, std::vector<Contact>& contacts);
+                         std::vector<Contact>& contacts);
 
 // Twists as solved for; moves the bodies.
 void finishEuler(const std::vector<Vector6d>& twists, double dt, std::vector<RigidBody>& bodies);
-void finishSecondOrder(const BodyPlan& plan, const std::vector<Vector6d>& twists, double dt,
-                       std::vector<RigidBody>& bodies);
+// Closing bodies move by their new twist, for which non-penetration was solved; where some are to rebound, also by as much
+// of the old one, at most half, as leaves the contacts open: so that they do it from the surface, not from above it.
+void finishSecondOrder(const BodyPlan& plan, const std::vector<Contact>& contacts, bool rebound,
+                       const std::vector<Vector6d>& twists, double dt, std::vector<RigidBody>& bodies);
 
 }  // namespace monolith

@@ -3,19 +3,12 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <stdexcept>
 
-#include "coupling/coupled_system.h"
 #include "fluid/advection.h"
-#include "rigid/contact.h"
 #include "rigid/overlap.h"
-#include "simulation/body_motion.h"
-#include "simulation/contact_laws.h"
-#include "simulation/liquid_state.h"
-#include "simulation/non_newtonian.h"
-#include "simulation/time_stepping.h"
+#include "simulation/simulation_impl.h"
 
 namespace monolith {
 namespace {
@@ -23,108 +16,16 @@ namespace {
 constexpr double kMeshResolution = 0.5;     // of a cell: spacing of the distance grid of meshes
 constexpr double kOverlapTolerance = 0.05;  // of a cell, at the start
 constexpr int kLargestSubsteps = 64;
-// The first solve starts from nothing that it could correct later.
-constexpr double kFirstTolerance = 1e-4;
-constexpr double kTouchingGap = 0.01;       // of a cell
-constexpr double kClosingTolerance = 1e-3;  // of a cell: a gap that closes by less within a step is no impact
-// Steps of backward Euler: one in which the velocity jumps, and one for the next to continue.
-constexpr int kStepsAfterSet = 2;
-constexpr int kStepsAfterImpact = 1;
 // Parts of the very first step: the two of first order are short enough not to be seen in what follows.
-constexpr std::array<double, 3> kFirstParts = {0.125, 0.125, 0.25};
-
-class StageClock {
- public:
-  explicit StageClock(double& total) : total_(total), start_(std::chrono::steady_clock::now()) {}
-  ~StageClock() { total_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
- private:
-  double& total_;
-  std::chrono::steady_clock::time_point start_;
-};
-
-// Everything that a step may change, and that an uncommitted step must leave.
-struct State {
-  double time = 0.0;
-  long step = 0;
-  std::vector<RigidBody> bodies;
-  std::vector<FreeSurface> surface;  // exactly one; a vector because it has no default
-  CoupledState coupled;
-  std::array<std::vector<std::uint8_t>, 3> known;
-  FaceField<double> acceleration;           // m/s^2, of the liquid's particles, mean over the last sub-step
-  std::vector<Vector6d> body_acceleration;  // likewise
-  double liquid_speed = 0.0;                // m/s, no component of the velocity is larger
-  double last_dt = 0.0;                     // s, of the last sub-step
-  int euler_steps = kStepsAfterSet;         // sub-steps of backward Euler that are due
-  std::size_t substeps = 0;
-  bool started = false;
-  double typical_viscosity = 0.0;  // Pa s, of a non-Newtonian liquid
-};
+constexpr std::array<double, 2> kFirstParts = {0.25, 0.25};
 
 }  // namespace
-
-struct Simulation::Impl {
-  explicit Impl(const Scene& s)
-      : scene(s),
-        grid(makeGrid(s.tank, s.liquid)),
-        walls(makeWalls(s.tank)),
-        sampler(grid),
-        system(grid, s.solver.name, s.solver.coupling, s.solver.discretisation),
-        laws(s),
-        viscosity_law(makeViscosityLaw(s.liquid)) {}
-
-  static TankWalls makeWalls(const TankDescription& tank) {
-    TankWalls walls;
-    walls.inside = Eigen::AlignedBox3d(tank.origin, tank.origin + tank.size);
-    for (int a = 0; a < 3; ++a) walls.periodic[a] = tank.periodic[a];
-    return walls;
-  }
-
-  void initialise();
-  bool hasLiquid() const { return !state.surface[0].empty(); }
-  bool nonNewtonian() const { return hasLiquid() && !viscosity_law.constant(); }
-  bool noSlip() const { return viscosity_law.most() > 0.0; }
-  double bodySpeed() const;
-  bool substep(double dt, StepReport& report);
-  bool secondOrder() const { return scene.solver.time_stepping == TimeStepping::kBdf2; }
-  StepWeights weights(double dt) const;
-  double contactReach(double dt) const;
-  BodyPlan planBodies(const StepWeights& w, const std::vector<char>& closing, std::vector<Contact>& contacts) const;
-  void prepareSolve(const StepWeights& w);
-  void advectLiquid(const StepWeights& w, FaceField<double>& free_velocity);
-  CoupledReport solveWithLiquid(const StepWeights& w, const std::vector<Contact>& contacts, StepReport& report);
-  void takeMeans(const StepWeights& w, const std::vector<Wrench>& liquid_before);
-  void moveLiquid(const StepWeights& w, const FaceField<double>& velocity_before, StepReport& report);
-  void prepareGeometry();
-  void measure(StepReport& report) const;
-
-  Scene scene;
-  MacGrid grid;
-  TankWalls walls;
-  SolidSampler sampler;
-  SolidFractions solids;       // at the bodies' present poses, sticking liquid not yet attached
-  BodyPlan plan;               // of the last solve
-  SolidFractions step_solids;  // as the last solve used them
-  std::vector<FreeSurface> step_surface;
-  FaceField<double> carried;  // velocity that the liquid at each face had at the start of the step
-  CoupledSystem system;
-  ContactLaws laws;
-  ViscosityLaw viscosity_law;
-  std::unique_ptr<ContactDetector> detector;
-  std::vector<Wrench> wrenches;
-  double target_volume = 0.0;  // m^3
-  // Of the liquid that stuck to the bodies in the last solve, at their poses then.
-  double sticking_energy = 0.0;  // J
-  Eigen::Vector3d sticking_momentum = Eigen::Vector3d::Zero();
-  State state;
-  StepReport report;
-};
 
 Simulation::Simulation(const Scene& scene) : impl_(std::make_unique<Impl>(scene)) { impl_->initialise(); }
 Simulation::~Simulation() = default;
 
 void Simulation::Impl::initialise() {
-  state = State();
+  state = SimulationState();
   report = StepReport();
   for (const BodyDescription& body : scene.bodies) {
     state.bodies.push_back(makeRigidBody(body, kMeshResolution * grid.h));
@@ -140,12 +41,15 @@ void Simulation::Impl::initialise() {
   state.coupled.pressure = hydrostaticPressure(grid, state.surface[0], scene.liquid.density, scene.gravity);
   state.coupled.liquid.assign(state.bodies.size(), Wrench());
   state.coupled.contact.assign(state.bodies.size(), Wrench());
+  state.mean_liquid = state.coupled.liquid;
+  state.mean_contact = state.coupled.contact;
   prepareGeometry();
   target_volume = state.surface[0].volume(solids.cell_fluid);
   state.typical_viscosity = viscosity_law.viscosity(0.0);
 }
 
 void Simulation::Impl::prepareGeometry() {
+  predicted = false;
   sampler.sample(state.bodies, solids);
   state.surface[0].extendIntoSolids(solids.cell_distance);
 }
@@ -157,215 +61,6 @@ double Simulation::Impl::bodySpeed() const {
     speed = std::max(speed, body.twist.head<3>().norm() + 0.5 * reach * body.twist.tail<3>().norm());
   }
   return speed;
-}
-
-StepWeights Simulation::Impl::weights(double dt) const {
-  return secondOrder() && state.euler_steps == 0 ? bdf2Weights(dt, state.last_dt) : eulerWeights(dt);
-}
-
-// Whatever could touch within the step: at present speeds, and what gravity and wrenches add.
-double Simulation::Impl::contactReach(double dt) const {
-  double reach = bodySpeed() + scene.gravity.norm() * dt;
-  for (const Vector6d& twist : planEuler(state.bodies, scene.gravity, wrenches, state.time, dt).free_twists) {
-    reach = std::max(reach, twist.head<3>().norm());
-  }
-  return std::min(2.0 * reach * dt, scene.tank.size.norm()) + 0.05 * grid.h;
-}
-
-BodyPlan Simulation::Impl::planBodies(const StepWeights& w, const std::vector<char>& closing,
-                                      std::vector<Contact>& contacts) const {
-  if (w.order == 1) return planEuler(state.bodies, scene.gravity, wrenches, state.time, w.dt);
-  const BodyPast past{state.body_acceleration, state.coupled.liquid, state.coupled.contact};
-  std::vector<char> by_euler = touchingBodies(state.bodies.size(), contacts, kTouchingGap * grid.h);
-  for (std::size_t b = 0; b < by_euler.size(); ++b) by_euler[b] = by_euler[b] || closing[b];
-  return planSecondOrder(state.bodies, scene.gravity, wrenches, past, state.time, w, closing, by_euler, contacts);
-}
-
-// Geometry of the solve.
-void Simulation::Impl::prepareSolve(const StepWeights& w) {
-  step_surface = state.surface;
-  if (w.order == 1) {
-    step_solids = solids;
-    return;
-  }
-  sampler.sample(plan.bodies, step_solids);
-  step_surface[0].advect(state.coupled.velocity, w.dt, state.liquid_speed);
-  step_surface[0].extendIntoSolids(step_solids.cell_distance);
-}
-
-void Simulation::Impl::advectLiquid(const StepWeights& w, FaceField<double>& free_velocity) {
-  if (w.order == 2 && hasLiquid()) {
-    FaceField<double> gained;
-    advectAccelerated(grid, state.coupled.velocity, state.acceleration, state.known, w.dt, carried, gained);
-    free_velocity = carried;
-    for (int a = 0; a < 3; ++a) {
-      for (std::size_t i = 0; i < gained[a].size(); ++i) free_velocity[a][i] += w.carry * w.dt * gained[a][i];
-    }
-  } else {
-    advectVelocity(grid, state.coupled.velocity, state.known, w.dt, carried);
-    free_velocity = carried;
-  }
-  for (int a = 0; a < 3; ++a) {
-    if (scene.gravity[a] == 0.0) continue;
-    for (double& u : free_velocity[a]) u += w.implicit * scene.gravity[a];
-  }
-}
-
-CoupledReport Simulation::Impl::solveWithLiquid(const StepWeights& w, const std::vector<Contact>& contacts,
-                                                StepReport& step) {
-  const LiquidDescription& liquid = scene.liquid;
-  FaceField<double> free_velocity;
-  {
-    const StageClock clock(step.times.advection);
-    advectLiquid(w, free_velocity);
-  }
-  {
-    const StageClock clock(step.times.geometry);
-    prepareSolve(w);
-    const auto& distance = step_surface[0].distance();
-    if (nonNewtonian()) {
-      system.assembleVariable(step_solids, plan.bodies, distance, liquid.density, state.typical_viscosity, w.implicit);
-    } else {
-      system.assemble(step_solids, plan.bodies, distance, liquid.density, liquid.dynamic_viscosity, w.implicit);
-    }
-  }
-  const StageClock clock(step.times.solve);
-  CoupledOptions options;
-  options.tolerance = scene.solver.tolerance * (state.started ? 1.0 : kFirstTolerance);
-  options.maximum_iterations = scene.solver.maximum_iterations;
-  state.coupled.twists.resize(state.bodies.size());
-  for (std::size_t b = 0; b < state.bodies.size(); ++b) state.coupled.twists[b] = state.bodies[b].twist;
-  const auto solve = [&](const CoupledOptions& with) {
-    return system.solve(free_velocity, plan.free_twists, contacts, laws.of(contacts), scene.gravity, with,
-                        state.coupled);
-  };
-  if (!nonNewtonian()) return solve(options);
-  RheologyReport rheology;
-  const CoupledReport solved =
-      solveNonNewtonian(system, viscosity_law, state.typical_viscosity, liquid.rheology.maximum_iterations,
-                        scene.solver.tolerance, options, solve, state.coupled, rheology);
-  step.rheology_iterations += rheology.iterations;
-  state.typical_viscosity = rheology.typical_viscosity;
-  return solved;
-}
-
-// The solve's wrenches are the impulses over the part of the step that is implicit; what is kept are means over it.
-void Simulation::Impl::takeMeans(const StepWeights& w, const std::vector<Wrench>& liquid_before) {
-  const double part = w.implicit / w.dt;
-  state.body_acceleration.resize(state.bodies.size());
-  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
-    state.body_acceleration[b] = (state.coupled.twists[b] - state.bodies[b].twist) / w.dt;
-    Wrench& liquid = state.coupled.liquid[b];
-    liquid.force = part * liquid.force + w.carry * liquid_before[b].force;
-    liquid.torque = part * liquid.torque + w.carry * liquid_before[b].torque;
-    state.coupled.contact[b].force *= part;
-    state.coupled.contact[b].torque *= part;
-  }
-}
-
-void Simulation::Impl::moveLiquid(const StepWeights& w, const FaceField<double>& velocity_before, StepReport& step) {
-  double speed = 0.0;
-  for (int a = 0; a < 3; ++a) {
-    double largest = 0.0;
-    for (const double u : state.coupled.velocity[a]) largest = std::max(largest, std::abs(u));
-    speed += largest * largest;
-  }
-  step.maximum_speed = std::sqrt(speed);
-  // As far as a trajectory of this step reaches, and no further than the tank.
-  const int most = *std::max_element(grid.lattice.n.begin(), grid.lattice.n.end());
-  const double reach = std::ceil(std::max(step.maximum_speed, bodySpeed()) * w.dt / grid.h);
-  const int layers = static_cast<int>(std::min(reach, static_cast<double>(most))) + 3;
-  std::vector<RigidBody> moving = plan.bodies;
-  for (std::size_t b = 0; b < moving.size(); ++b) moving[b].twist = state.coupled.twists[b];
-  const auto known_before = state.known;
-  completeVelocity(grid, system.problem(), step_solids, moving, layers, noSlip(), nullptr, state.coupled.velocity,
-                   state.known);
-  if (secondOrder()) {
-    for (std::size_t b = 0; b < moving.size(); ++b) moving[b].twist = state.body_acceleration[b];
-    FaceField<double>& acceleration = state.acceleration;
-    for (int a = 0; a < 3; ++a) {
-      acceleration[a].resize(grid.lattice.size);
-      for (std::size_t i = 0; i < grid.lattice.size; ++i) {
-        acceleration[a][i] = (state.coupled.velocity[a][i] - carried[a][i]) / w.dt;
-      }
-    }
-    std::array<std::vector<std::uint8_t>, 3> known;
-    completeVelocity(grid, system.problem(), step_solids, moving, layers, noSlip(), &known_before, acceleration, known);
-  }
-  if (w.order == 2) {
-    FaceField<double> mean = velocity_before;
-    for (int a = 0; a < 3; ++a) {
-      for (std::size_t i = 0; i < grid.lattice.size; ++i)
-        mean[a][i] = 0.5 * (mean[a][i] + state.coupled.velocity[a][i]);
-    }
-    state.surface[0].advect(mean, w.dt, std::max(step.maximum_speed, state.liquid_speed));
-  } else {
-    state.surface[0].advect(state.coupled.velocity, w.dt, step.maximum_speed);
-  }
-  state.liquid_speed = step.maximum_speed;
-  prepareGeometry();
-  step.volume_correction += state.surface[0].correctVolume(target_volume, solids.cell_fluid);
-}
-
-bool Simulation::Impl::substep(double dt, StepReport& step) {
-  const StepWeights w = weights(dt);
-  std::vector<Contact> contacts;
-  std::vector<char> closing;
-  {
-    const StageClock clock(step.times.contact);
-    contacts = detector->detect(state.bodies, contactReach(dt));
-    closing = closingBodies(state.bodies, contacts, dt, kClosingTolerance * grid.h);
-    plan = planBodies(w, closing, contacts);
-    for (Contact& contact : contacts) {
-      step.penetration = std::max(step.penetration, -contact.gap);
-      contact.gap *= w.implicit / w.dt;  // the solve divides it by what it takes for the step
-    }
-  }
-  const std::vector<Wrench> liquid_before = state.coupled.liquid;
-  const FaceField<double> velocity_before = w.order == 2 ? state.coupled.velocity : FaceField<double>();
-  const CoupledReport solved = solveWithLiquid(w, contacts, step);
-  step.iterations += solved.iterations;
-  step.liquid_solves += solved.solves;
-  step.friction_iterations += solved.friction_iterations;
-  step.residual = std::max(step.residual, solved.residual);
-  step.contact_residual = std::max(step.contact_residual, solved.contact_residual);
-  step.divergence = std::max(step.divergence, solved.divergence);
-  if (solved.status != CoupledReport::Status::kConverged) {
-    step.status =
-        solved.status == CoupledReport::Status::kInconsistent ? SolveStatus::kInconsistent : SolveStatus::kNotConverged;
-    step.message = solved.message;
-    return false;
-  }
-  state.started = true;
-  sticking_energy = system.stickingEnergy(state.coupled.twists);
-  sticking_momentum = system.stickingMomentum(state.coupled.twists);
-  step.model.liquid = hasLiquid();
-  step.model.viscosity = hasLiquid() && noSlip();
-  step.model.non_newtonian = nonNewtonian();
-  step.model.free_surface = hasLiquid() && !state.surface[0].full();
-  step.model.time_order = w.order;
-  step.model.coupled_bodies = system.coupledBodies();
-  step.model.contacts = static_cast<int>(contacts.size());
-  step.model.friction = std::any_of(contacts.begin(), contacts.end(), [&](const Contact& contact) {
-    return laws.of(contact.body_a, contact.body_b).friction > 0.0;
-  });
-
-  takeMeans(w, liquid_before);
-  if (w.order == 2) {
-    finishSecondOrder(plan, state.coupled.twists, dt, state.bodies);
-  } else {
-    finishEuler(state.coupled.twists, dt, state.bodies);
-  }
-  const bool impact = std::find(closing.begin(), closing.end(), 1) != closing.end();
-  state.euler_steps = impact ? kStepsAfterImpact : std::max(0, state.euler_steps - 1);
-  state.last_dt = dt;
-  ++state.substeps;
-  if (hasLiquid()) {
-    const StageClock clock(step.times.surface);
-    moveLiquid(w, velocity_before, step);
-  }
-  state.time += dt;
-  return true;
 }
 
 void Simulation::Impl::measure(StepReport& step) const {
@@ -395,7 +90,9 @@ StepReport Simulation::step() {
   Impl& m = *impl_;
   const int threads_before = omp_get_max_threads();
   if (m.scene.solver.threads > 0) omp_set_num_threads(m.scene.solver.threads);
-  const State before = m.state;
+  const SimulationState before = m.state;
+  m.state.mean_liquid.assign(m.state.bodies.size(), Wrench());
+  m.state.mean_contact.assign(m.state.bodies.size(), Wrench());
   StepReport step;
   double left = m.scene.time_step;
   {
@@ -439,8 +136,8 @@ std::vector<BodyState> Simulation::bodyStates() const {
     s.X_WB = body.pose();
     s.velocity = body.velocityAt(s.X_WB.translation());
     s.angular_velocity = body.twist.tail<3>();
-    s.liquid = impl_->state.coupled.liquid[b];
-    s.contact = impl_->state.coupled.contact[b];
+    s.liquid = impl_->state.mean_liquid[b];
+    s.contact = impl_->state.mean_contact[b];
     out.push_back(s);
   }
   return out;

@@ -63,6 +63,7 @@ TEST_F(SceneFile, DefaultsAreThoseOfTheDescriptions) {
   EXPECT_EQ(scene.liquid.fill_level, 0.0);
   EXPECT_EQ(scene.solver.tolerance, SolverDescription().tolerance);
   EXPECT_EQ(scene.solver.discretisation, Discretisation::kFitted);
+  EXPECT_EQ(scene.solver.time_stepping, TimeStepping::kBdf2);
   EXPECT_TRUE(scene.bodies.empty());
   EXPECT_LT((scene.tank.origin - Vector3d(-0.5, -0.4, 0.0)).norm(), 1e-15);  // centred, floor at 0
 }
@@ -78,7 +79,7 @@ liquid:
   boxes: [{min: [1.0, 2.0, 3.0], max: [2.0, 3.0, 3.5]}]
 gravity: [1.0, 0.0, -2.0]
 time_step: 0.05
-solver: {discretisation: fractions, tolerance: 1e-8, maximum_iterations: 7, threads: 2, cfl: 0.5}
+solver: {discretisation: fractions, time_stepping: backward_euler, tolerance: 1e-8, maximum_iterations: 7, threads: 2, cfl: 0.5}
 bodies:
   - name: free_one
     urdf: ball.urdf
@@ -106,6 +107,7 @@ bodies:
   EXPECT_EQ(scene.gravity, Vector3d(1, 0, -2));
   EXPECT_EQ(scene.time_step, 0.05);
   EXPECT_EQ(scene.solver.discretisation, Discretisation::kFractions);
+  EXPECT_EQ(scene.solver.time_stepping, TimeStepping::kBackwardEuler);
   EXPECT_EQ(scene.solver.tolerance, 1e-8);
   EXPECT_EQ(scene.solver.maximum_iterations, 7);
   EXPECT_EQ(scene.solver.threads, 2);
@@ -175,6 +177,7 @@ TEST_F(SceneFile, EachViolationNamesLineKeyValueAndExpectation) {
       {kTank + "gravity: -9.81\n", {"gravity: value -9.81: expected a list of 3"}},
       {kTank + "name: []\n", {"name: value []"}},
       {kTank + "solver: {discretisation: fitter}\n", {"solver.discretisation: value fitter", "fitted", "fractions"}},
+      {kTank + "solver: {time_stepping: bdf3}\n", {"solver.time_stepping: value bdf3", "backward_euler", "bdf2"}},
       {kTank + "solver: {tolerance: 2}\n", {"solver.tolerance: value 2"}},
       {kTank + "solver: {tolerance: 0}\n", {"solver.tolerance: value 0"}},
       {kTank + "solver: {maximum_iterations: 0}\n", {"solver.maximum_iterations: value 0", ">= 1"}},

@@ -47,7 +47,12 @@ TEST(Friction, BoxSticksBelowTheFrictionAngleAndSlidesAbove) {
 TEST(Friction, DrySlidingIsCoulombs) {
   const double angle = 35.0 * kDegree, dt = 0.02;
   const double a = 9.81 * (std::sin(angle) - 0.5 * std::cos(angle));
-  EXPECT_NEAR(slide(slope(angle, false), 15), 0.5 * a * dt * dt * 15 * 16, 1e-7);
+  // Exact for a constant acceleration, but for the two short steps of backward Euler at the start.
+  const double time = 15 * dt, first = 0.25 * dt;
+  EXPECT_NEAR(slide(slope(angle, false), 15), 0.5 * a * time * time + a * first * first, 1e-7);
+  Scene euler = slope(angle, false);
+  euler.solver.time_stepping = TimeStepping::kBackwardEuler;
+  EXPECT_NEAR(slide(euler, 15), 0.5 * a * dt * dt * 15 * 16, 1e-7);
 }
 
 TEST(Friction, OfAContactOutOfReachChangesNoBit) {
@@ -111,6 +116,7 @@ TEST(ModelSelection, LeavingOutTheStressBlockChangesTheAnswerByNoMoreThanItsSize
   Scene scene = slope(0.0, true);
   scene.bodies[0].X_WB.translation()[2] = 0.15;
   scene.solver.tolerance = 1e-9;
+  scene.solver.time_stepping = TimeStepping::kBackwardEuler;  // a single solve: later ones follow what slips past walls
   Scene inviscid = scene;
   inviscid.liquid.dynamic_viscosity = 0.0;
   scene.liquid.dynamic_viscosity = 1e-10;

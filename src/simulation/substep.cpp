@@ -1,0 +1,240 @@
+// One sub-step; substep() at the end of this file is the algorithm, what it calls stands above it in that order.
+
+#include <algorithm>
+#include <cmath>
+
+#include "fluid/advection.h"
+#include "simulation/simulation_impl.h"
+
+namespace monolith {
+namespace {
+
+// The first solve starts from nothing that it could correct later.
+constexpr double kFirstTolerance = 1e-4;
+constexpr double kClosingTolerance = 1e-3;  // of a cell: a gap that closes by less within a step is no impact
+// After the step of an impact one of backward Euler, for the next to continue.
+constexpr int kStepsAfterImpact = 1;
+
+}  // namespace
+
+StepWeights Simulation::Impl::weights(double dt) const {
+  return secondOrder() && state.euler_steps == 0 ? bdf2Weights(dt, state.last_dt) : eulerWeights(dt);
+}
+
+// Whatever could touch within the step: at present speeds, and what gravity and wrenches add.
+double Simulation::Impl::contactReach(double dt) const {
+  double reach = bodySpeed() + scene.gravity.norm() * dt;
+  for (const Vector6d& twist : planEuler(state.bodies, scene.gravity, wrenches, state.time, dt).free_twists) {
+    reach = std::max(reach, twist.head<3>().norm());
+  }
+  return std::min(2.0 * reach * dt, scene.tank.size.norm()) + 0.05 * grid.h;
+}
+
+BodyPlan Simulation::Impl::planBodies(const StepWeights& w, const std::vector<char>& closing,
+                                      std::vector<Contact>& contacts) const {
+  if (w.order == 1) return planEuler(state.bodies, scene.gravity, wrenches, state.time, w.dt);
+  const BodyPast past{state.body_acceleration, state.coupled.liquid, state.coupled.contact};
+  return planSecondOrder(state.bodies, scene.gravity, wrenches, past, state.time, w, closing, contacts);
+}
+
+// Geometry of the solve.
+void Simulation::Impl::prepareSolve(const StepWeights& w) {
+  if (w.order == 1) {
+    if (predicted) prepareGeometry();
+    step_surface = state.surface;
+    step_solids = solids;
+    return;
+  }
+  step_surface = state.surface;
+  sampler.sample(plan.bodies, step_solids);
+  step_surface[0].advect(state.coupled.velocity, w.dt, state.liquid_speed);
+  step_surface[0].extendIntoSolids(step_solids.cell_distance);
+}
+
+void Simulation::Impl::advectLiquid(const StepWeights& w, FaceField<double>& free_velocity) {
+  if (w.order == 2 && hasLiquid()) {
+    FaceField<double> gained;
+    advectAccelerated(grid, state.coupled.velocity, state.acceleration, state.known, w.dt, carried, gained);
+    free_velocity = carried;
+    for (int a = 0; a < 3; ++a) {
+      for (std::size_t i = 0; i < gained[a].size(); ++i) free_velocity[a][i] += w.carry * w.dt * gained[a][i];
+    }
+  } else {
+    advectVelocity(grid, state.coupled.velocity, state.known, w.dt, carried);
+    free_velocity = carried;
+  }
+  for (int a = 0; a < 3; ++a) {
+    if (scene.gravity[a] == 0.0) continue;
+    for (double& u : free_velocity[a]) u += w.implicit * scene.gravity[a];
+  }
+}
+
+CoupledReport Simulation::Impl::solveWithLiquid(const StepWeights& w, const std::vector<Contact>& contacts,
+                                                StepReport& step) {
+  const LiquidDescription& liquid = scene.liquid;
+  FaceField<double> free_velocity;
+  {
+    const StageClock clock(step.times.advection);
+    advectLiquid(w, free_velocity);
+  }
+  {
+    const StageClock clock(step.times.geometry);
+    prepareSolve(w);
+    const auto& distance = step_surface[0].distance();
+    if (nonNewtonian()) {
+      system.assembleVariable(step_solids, plan.bodies, distance, liquid.density, state.typical_viscosity, w.implicit);
+    } else {
+      system.assemble(step_solids, plan.bodies, distance, liquid.density, liquid.dynamic_viscosity, w.implicit);
+    }
+  }
+  const StageClock clock(step.times.solve);
+  std::vector<Contact> scaled = contacts;  // the solve divides gaps by what it takes for the step
+  for (Contact& contact : scaled) contact.gap *= w.implicit / w.dt;
+  CoupledOptions options;
+  options.tolerance = scene.solver.tolerance * (state.started ? 1.0 : kFirstTolerance);
+  options.maximum_iterations = scene.solver.maximum_iterations;
+  state.coupled.twists.resize(state.bodies.size());
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) state.coupled.twists[b] = state.bodies[b].twist;
+  const auto solve = [&](const CoupledOptions& with) {
+    return system.solve(free_velocity, plan.free_twists, scaled, laws.of(contacts), scene.gravity, with, state.coupled);
+  };
+  if (!nonNewtonian()) return solve(options);
+  RheologyReport rheology;
+  const CoupledReport solved =
+      solveNonNewtonian(system, viscosity_law, state.typical_viscosity, liquid.rheology.maximum_iterations,
+                        scene.solver.tolerance, options, solve, state.coupled, rheology);
+  step.rheology_iterations += rheology.iterations;
+  state.typical_viscosity = rheology.typical_viscosity;
+  return solved;
+}
+
+// The solve's wrenches are the impulses over the part of the step that is implicit; what is kept are means over it.
+void Simulation::Impl::takeMeans(const StepWeights& w, const std::vector<Wrench>& liquid_before) {
+  const double part = w.implicit / w.dt;
+  state.body_acceleration.resize(state.bodies.size());
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+    state.body_acceleration[b] = (state.coupled.twists[b] - state.bodies[b].twist) / w.dt;
+    Wrench& liquid = state.coupled.liquid[b];
+    liquid.force = part * liquid.force + w.carry * liquid_before[b].force;
+    liquid.torque = part * liquid.torque + w.carry * liquid_before[b].torque;
+    Wrench& contact = state.coupled.contact[b];
+    contact.force *= part;
+    contact.torque *= part;
+    const double share = w.dt / scene.time_step;
+    state.mean_liquid[b].force += share * liquid.force;
+    state.mean_liquid[b].torque += share * liquid.torque;
+    state.mean_contact[b].force += share * contact.force;
+    state.mean_contact[b].torque += share * contact.torque;
+  }
+}
+
+void Simulation::Impl::moveLiquid(const StepWeights& w, const FaceField<double>& velocity_before, StepReport& step) {
+  double speed = 0.0;
+  for (int a = 0; a < 3; ++a) {
+    double largest = 0.0;
+    for (const double u : state.coupled.velocity[a]) largest = std::max(largest, std::abs(u));
+    speed += largest * largest;
+  }
+  step.maximum_speed = std::sqrt(speed);
+  // As far as a trajectory of this step reaches, and no further than the tank.
+  const int most = *std::max_element(grid.lattice.n.begin(), grid.lattice.n.end());
+  const double reach = std::ceil(std::max(step.maximum_speed, bodySpeed()) * w.dt / grid.h);
+  const int layers = static_cast<int>(std::min(reach, static_cast<double>(most))) + 3;
+  std::vector<RigidBody> moving = plan.bodies;
+  for (std::size_t b = 0; b < moving.size(); ++b) moving[b].twist = state.coupled.twists[b];
+  const auto known_before = state.known;
+  completeVelocity(grid, system.problem(), step_solids, moving, layers, noSlip(), nullptr, state.coupled.velocity,
+                   state.known);
+  if (secondOrder()) {
+    for (std::size_t b = 0; b < moving.size(); ++b) moving[b].twist = state.body_acceleration[b];
+    FaceField<double>& acceleration = state.acceleration;
+    for (int a = 0; a < 3; ++a) {
+      acceleration[a].resize(grid.lattice.size);
+      for (std::size_t i = 0; i < grid.lattice.size; ++i) {
+        acceleration[a][i] = (state.coupled.velocity[a][i] - carried[a][i]) / w.dt;
+      }
+    }
+    std::array<std::vector<std::uint8_t>, 3> known;
+    completeVelocity(grid, system.problem(), step_solids, moving, layers, noSlip(), &known_before, acceleration, known);
+  }
+  if (w.order == 2) {
+    FaceField<double> mean = velocity_before;
+    for (int a = 0; a < 3; ++a) {
+      for (std::size_t i = 0; i < grid.lattice.size; ++i) mean[a][i] = 0.5 * (mean[a][i] + state.coupled.velocity[a][i]);
+    }
+    state.surface[0].advect(mean, w.dt, std::max(step.maximum_speed, state.liquid_speed));
+    // The poses of the solve are those of now but for dt^2/2 times the acceleration.
+    solids.cell_distance = step_solids.cell_distance;
+    solids.cell_fluid = step_solids.cell_fluid;
+    state.surface[0].extendIntoSolids(solids.cell_distance);
+    predicted = true;
+  } else {
+    state.surface[0].advect(state.coupled.velocity, w.dt, step.maximum_speed);
+    prepareGeometry();
+  }
+  state.liquid_speed = step.maximum_speed;
+  step.volume_correction += state.surface[0].correctVolume(target_volume, solids.cell_fluid);
+}
+
+bool Simulation::Impl::substep(double dt, StepReport& step) {
+  const StepWeights w = weights(dt);
+  std::vector<Contact> contacts;
+  std::vector<char> closing;
+  {
+    const StageClock clock(step.times.contact);
+    contacts = detector->detect(state.bodies, contactReach(dt));
+    closing = closingBodies(state.bodies, contacts, dt, kClosingTolerance * grid.h);
+    for (const Contact& contact : contacts) step.penetration = std::max(step.penetration, -contact.gap);
+    plan = planBodies(w, closing, contacts);
+  }
+  const std::vector<Wrench> liquid_before = state.coupled.liquid;
+  const FaceField<double> velocity_before = w.order == 2 ? state.coupled.velocity : FaceField<double>();
+  const CoupledReport solved = solveWithLiquid(w, contacts, step);
+  step.iterations += solved.iterations;
+  step.liquid_solves += solved.solves;
+  step.friction_iterations += solved.friction_iterations;
+  step.residual = std::max(step.residual, solved.residual);
+  step.contact_residual = std::max(step.contact_residual, solved.contact_residual);
+  step.divergence = std::max(step.divergence, solved.divergence);
+  if (solved.status != CoupledReport::Status::kConverged) {
+    step.status =
+        solved.status == CoupledReport::Status::kInconsistent ? SolveStatus::kInconsistent : SolveStatus::kNotConverged;
+    step.message = solved.message;
+    return false;
+  }
+  state.started = true;
+  sticking_energy = system.stickingEnergy(state.coupled.twists);
+  sticking_momentum = system.stickingMomentum(state.coupled.twists);
+  step.model.liquid = hasLiquid();
+  step.model.viscosity = hasLiquid() && noSlip();
+  step.model.non_newtonian = nonNewtonian();
+  step.model.free_surface = hasLiquid() && !state.surface[0].full();
+  step.model.time_order = w.order;
+  step.model.coupled_bodies = system.coupledBodies();
+  step.model.contacts = static_cast<int>(contacts.size());
+  step.model.friction = std::any_of(contacts.begin(), contacts.end(), [&](const Contact& contact) {
+    return laws.of(contact.body_a, contact.body_b).friction > 0.0;
+  });
+
+  takeMeans(w, liquid_before);
+  if (w.order == 2) {
+    const bool rebound = std::any_of(contacts.begin(), contacts.end(), [&](const Contact& contact) {
+      return closing[contact.body_a] && laws.of(contact.body_a, contact.body_b).restitution > 0.0;
+    });
+    finishSecondOrder(plan, contacts, rebound, state.coupled.twists, dt, state.bodies);
+  } else {
+    finishEuler(state.coupled.twists, dt, state.bodies);
+  }
+  const bool impact = std::find(closing.begin(), closing.end(), 1) != closing.end();
+  state.euler_steps = impact ? kStepsAfterImpact : std::max(0, state.euler_steps - 1);
+  state.last_dt = dt;
+  ++state.substeps;
+  if (hasLiquid()) {
+    const StageClock clock(step.times.surface);
+    moveLiquid(w, velocity_before, step);
+  }
+  state.time += dt;
+  return true;
+}
+
+}  // namespace monolith

@@ -1,0 +1,205 @@
+// Standing waves of small height: between walls, whose frequency and damping by the boundary layers are known where viscosity is
+// small; and on deep periodic liquid of any viscosity (Prosperetti 1981, Phys. Fluids 24, 1217).
+
+#include <cmath>
+#include <complex>
+
+#include "framework/meter.h"
+#include "framework/scene_parts.h"
+
+namespace monolith {
+namespace {
+
+constexpr double kGravity = 9.81;
+constexpr double kLength = 1.0;  // m, of the tank
+
+// Liquid `depth` deep with the surface depth + height cos(k x), as boxes that end on the slope; thin and periodic along y.
+Scene waveScene(double depth, double waves, double height, double viscosity, TimeStepping scheme, const Numerics& numerics) {
+  const int cells = static_cast<int>(std::lround(numerics.cells_across));
+  const double h = kLength / cells;
+  const double k = 2.0 * M_PI * waves / kLength;
+  Scene scene;
+  scene.source = "wave";
+  scene.tank.cell_width = h;
+  scene.tank.origin.setZero();
+  scene.tank.size = {kLength, 4.0 * h, h * std::ceil((depth + 4.0 * height) / h + 3.0)};
+  scene.tank.periodic[1] = true;
+  scene.tank.periodic[0] = waves == 1.0;
+  scene.liquid.dynamic_viscosity = viscosity * scene.liquid.density;
+  for (int i = 0; i < cells; ++i) {
+    const double low = i * h, high = low + h;
+    const double top = depth + height * (std::sin(k * high) - std::sin(k * low)) / (k * h);
+    // Each reaches on to where the surface is lower: no seams.
+    const bool falls = 2.0 * waves * (low + 0.5 * h) < kLength;
+    const bool lowest = falls && 2.0 * waves * (high + 0.5 * h) >= kLength;
+    scene.liquid.boxes.emplace_back(Eigen::Vector3d(falls ? 0.0 : low, 0.0, 0.0),
+                                    Eigen::Vector3d(falls && !lowest ? high : kLength, 4.0 * h, top));
+  }
+  apply(numerics, scene);
+  scene.solver.time_stepping = scheme;
+  return scene;
+}
+
+// Least squares of mean + a cos(k x).
+double amplitude(const Simulation& simulation, double k) {
+  double n = 0.0, f = 0.0, ff = 0.0, z = 0.0, fz = 0.0;
+  for (const SurfacePoint& p : simulation.surfacePoints()) {
+    const double shape = std::cos(k * p.position[0]);
+    n += 1.0;
+    f += shape;
+    ff += shape * shape;
+    z += p.position[2];
+    fz += shape * p.position[2];
+  }
+  return (fz * n - f * z) / (ff * n - f * f);
+}
+
+// Frequency from the passages through zero, damping from the extrema of a parabola through three samples.
+std::vector<Measurement> slosh(double viscosity, TimeStepping scheme, const Numerics& numerics, Meter& meter) {
+  constexpr double kDepth = 0.5, kPeriods = 4.0;
+  const double k = M_PI / kLength, kh = k * kDepth;
+  const double omega = std::sqrt(kGravity * k * std::tanh(kh));
+  Simulation simulation(waveScene(kDepth, 0.5, 0.005, viscosity, scheme, numerics));
+  double before = amplitude(simulation, k), last = before, first_zero = 0.0, last_zero = 0.0;
+  int zeros = 0;
+  std::vector<std::pair<double, double>> extrema;  // s, log of the height
+  meter.advance(simulation, kPeriods * 2.0 * M_PI / omega, [&](const StepReport& r) {
+    const double now = amplitude(simulation, k), dt = meter.dt();
+    if (now * last < 0.0) {
+      last_zero = r.time - dt * now / (now - last);
+      if (zeros++ == 0) first_zero = last_zero;
+    }
+    if (r.step > 1 && (last - before) * (now - last) < 0.0) {
+      const double slope = 0.5 * (now - before), bend = now - 2.0 * last + before;
+      extrema.emplace_back(r.time - dt - dt * slope / bend, std::log(std::abs(last - 0.5 * slope * slope / bend)));
+    }
+    before = last;
+    last = now;
+  });
+  double t = 0.0, y = 0.0, tt = 0.0, ty = 0.0;
+  const auto n = static_cast<double>(extrema.size());
+  for (const auto& [time, height] : extrema) {
+    t += time;
+    y += height;
+    tt += time * time;
+    ty += time * height;
+  }
+  const bool goals = viscosity <= 0.001;
+  std::vector<Measurement> out = {{"frequency, rad/s", M_PI * (zeros - 1) / (last_zero - first_zero), omega,
+                                   goals ? 0.01 : 0.0}};
+  if (viscosity == 0.0) return out;
+  const double s = std::sqrt(0.5 * viscosity * omega), part = 2.0 * kh / std::sinh(2.0 * kh);
+  const double damping = 2.0 * viscosity * k * k + s * k / std::sinh(2.0 * kh) + s / kLength * (1.0 - part);
+  // The layers on the walls, sqrt(2 nu/omega) thick, must not be thinner than half a cell.
+  const bool resolved = std::sqrt(2.0 * viscosity / omega) > 0.5 * kLength / numerics.cells_across;
+  out.push_back({"damping, 1/s", -(n * ty - t * y) / (n * tt - t * t), damping, goals && resolved ? 0.1 : 0.0});
+  return out;
+}
+
+// w(z) = e^(z^2) erfc(z) by its continued fraction where |z| is large, by erf's series elsewhere; Re z > -2.
+std::complex<double> scaledErfc(std::complex<double> z) {
+  if (z.real() < 0.0) return 2.0 * std::exp(z * z) - scaledErfc(-z);
+  if (std::abs(z) > 4.0) {
+    std::complex<double> fraction = z;
+    for (int i = 60; i > 0; --i) fraction = z + 0.5 * i / fraction;
+    return 1.0 / (std::sqrt(M_PI) * fraction);
+  }
+  std::complex<double> term = z, sum = z;
+  for (int i = 1; i < 120; ++i) {
+    term *= -z * z / static_cast<double>(i);
+    sum += term / (2.0 * i + 1.0);
+  }
+  return std::exp(z * z) * (1.0 - 2.0 / std::sqrt(M_PI) * sum);
+}
+
+// a(t)/a(0). The sum's terms e^((z^2 - q) t) erfc(z sqrt t) = e^(-q t) w(z sqrt t).
+double prosperetti(double q, double omega, double t) {
+  std::vector<std::complex<double>> roots = {{1.0, 0.0}, {0.4, 0.9}, {-0.65, 0.72}, {-0.9, -0.3}};
+  for (auto& z : roots) z *= std::sqrt(omega);
+  for (int it = 0; it < 500; ++it) {  // Durand & Kerner
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto z = roots[i];
+      std::complex<double> value = z * z * z * z + 2.0 * q * z * z + 4.0 * std::pow(q, 1.5) * z + q * q + omega * omega;
+      for (std::size_t j = 0; j < 4; ++j) {
+        if (j != i) value /= z - roots[j];
+      }
+      roots[i] -= value;
+    }
+  }
+  std::complex<double> sum = 4.0 * q * q / (8.0 * q * q + omega * omega) * std::erfc(std::sqrt(q * t));
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto z = roots[i];
+    std::complex<double> product = 1.0;
+    for (std::size_t j = 0; j < 4; ++j) {
+      if (j != i) product *= roots[j] - z;
+    }
+    sum += z / product * omega * omega / (z * z - q) * std::exp(-q * t) * scaledErfc(z * std::sqrt(t));
+  }
+  return sum.real();
+}
+
+std::vector<Measurement> deepWave(double viscosity, TimeStepping scheme, const Numerics& numerics, Meter& meter) {
+  const double k = 2.0 * M_PI / kLength;
+  Simulation simulation(waveScene(1.0, 1.0, 0.005, viscosity, scheme, numerics));
+  const double start = amplitude(simulation, k);
+  double worst = 0.0;
+  meter.advance(simulation, 0.8, [&](const StepReport& r) {
+    const double exact = prosperetti(viscosity * k * k, std::sqrt(kGravity * k), r.time);
+    worst = std::max(worst, std::abs(amplitude(simulation, k) / start - exact));
+  });
+  return {{"largest error of the height within 0.8 s, of the start's", worst, 0.0,
+           scheme == TimeStepping::kBdf2 ? 0.02 : 0.0, 1.0}};
+}
+
+using Wave = std::vector<Measurement> (*)(double, TimeStepping, const Numerics&, Meter&);
+
+std::vector<Variant> variants(Wave wave, const std::vector<double>& viscosities, Extent extent) {
+  const bool full = extent == Extent::kFull;
+  std::vector<Variant> out;
+  for (const double viscosity : viscosities) {
+    for (const TimeStepping scheme : {TimeStepping::kBdf2, TimeStepping::kBackwardEuler}) {
+      if (!full && (viscosity != 0.001 || scheme != TimeStepping::kBdf2)) continue;
+      Sweep sweep;
+      sweep.base.cells_across = 32.0;
+      sweep.base.dt = 0.02;
+      if (full) {
+        sweep.cells = {16, 32, 64};
+        sweep.steps = {0.04, 0.01, 0.005};
+      }
+      char name[64];
+      std::snprintf(name, sizeof name, "viscosity %g m^2/s, %s", viscosity,
+                    scheme == TimeStepping::kBdf2 ? "bdf2" : "backward Euler");
+      addSweep(
+          name, sweep,
+          [wave, viscosity, scheme](const Numerics& numerics, Meter& meter) {
+            return wave(viscosity, scheme, numerics, meter);
+          },
+          out);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+Case sloshing() {
+  Case c;
+  c.name = "sloshing";
+  c.title = "frequency and damping of the first mode of a tank, depth half its length";
+  c.reference = "linear waves with boundary layers";
+  c.across = "length of the tank";
+  c.variants = [](Extent extent) { return variants(slosh, {0.0, 0.0001, 0.001}, extent); };
+  return c;
+}
+
+Case viscousWave() {
+  Case c;
+  c.name = "wave";
+  c.title = "a standing wave on deep viscous liquid";
+  c.reference = "Prosperetti 1981, exact for small heights";
+  c.across = "wavelength";
+  c.variants = [](Extent extent) { return variants(deepWave, {0.001, 0.01}, extent); };
+  return c;
+}
+
+}  // namespace monolith
