@@ -1,8 +1,10 @@
 #include "fluid/advection.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "fluid/interpolation.h"
+#include "fluid/row_advection.h"
 
 namespace monolith {
 namespace {
@@ -119,21 +121,50 @@ void extrapolateVelocity(const Lattice& l, int layers, bool no_slip, std::array<
   }
 }
 
+double advectFace(const Lattice& l, const FaceField<double>& velocity, int axis, const std::array<int, 3>& face,
+                  double scale) {
+  const Eigen::Vector3d offset = nodeOffset(axis);
+  const Eigen::Vector3d x = Eigen::Vector3d(face[0], face[1], face[2]) + offset;
+  const Eigen::Vector3d v = velocityAtFace(l, velocity, axis, l.index(face[0], face[1], face[2]));
+  return sampleCubic(l, velocity[axis], traceBack(l, velocity, x, v, scale) - offset, true);
+}
+
 void advectVelocity(const MacGrid& grid, const FaceField<double>& velocity,
                     const std::array<std::vector<std::uint8_t>, 3>& known, double dt, FaceField<double>& moved) {
   const Lattice& l = grid.lattice;
   const double scale = dt / grid.h;
+  constexpr int kFour = 4;
   for (int a = 0; a < 3; ++a) {
-    moved[a].assign(l.size, 0.0);
-    const Eigen::Vector3d offset = nodeOffset(a);
+    moved[a].resize(l.size);
+    std::fill(moved[a].begin(), moved[a].end(), 0.0);
     forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
-      for (int i = 0; i < l.faceEnd(0); ++i) {
-        if (!known[a][row + i]) continue;
-        const Eigen::Vector3d x = Eigen::Vector3d(i, j, k) + offset;
-        const Eigen::Vector3d v = velocityAtFace(l, velocity, a, row + i);
-        const Eigen::Vector3d foot = traceBack(l, velocity, x, v, scale);
-        moved[a][row + i] = sampleCubic(l, velocity[a], foot - offset, true);
+      const std::uint8_t* mask = known[a].data() + row;
+      double* out = moved[a].data() + row;
+      const auto oneByOne = [&](int begin, int end) {
+        for (int i = begin; i < end; ++i) {
+          if (mask[i]) out[i] = advectFace(l, velocity, a, {i, j, k}, scale);
+        }
+      };
+      const int end = l.faceEnd(0);
+      const bool inside = j >= 1 && j < l.n[1] && k >= 1 && k < l.n[2] && l.n[0] > kFour;
+      if (!inside) {
+        oneByOne(0, end);
+        return;
       }
+      oneByOne(0, 1);
+      for (int i = 1; i < l.n[0]; i += kFour) {
+        const int first = std::min(i, l.n[0] - kFour);  // the last four overlap those before
+        if (!(mask[first] | mask[first + 1] | mask[first + 2] | mask[first + 3])) continue;
+        Four four;
+        if (!advectFour(l, velocity, a, row + first, scale, four)) {
+          oneByOne(i, std::min(i + kFour, l.n[0]));
+          continue;
+        }
+        for (int q = i - first; q < kFour; ++q) {
+          if (mask[first + q]) out[first + q] = four[q];
+        }
+      }
+      oneByOne(l.n[0], end);
     });
   }
 }

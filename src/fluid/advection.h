@@ -2,6 +2,7 @@
 // Transport by the liquid's own velocity: semi-Lagrangian (Robert 1981), traced back by the midpoint rule, tricubic
 // at the foot. Stable at any CFL number.
 
+#include <array>
 #include <cstdint>
 #include <limits>
 
@@ -15,6 +16,10 @@ namespace monolith {
 // tangential ones; even otherwise.
 void extrapolateVelocity(const Lattice& lattice, int layers, bool no_slip,
                          std::array<std::vector<std::uint8_t>, 3>& known, FaceField<double>& velocity);
+
+// The velocity at the foot of the trajectory that arrives at a face; scale: dt/h. Halos must be filled.
+double advectFace(const Lattice& lattice, const FaceField<double>& velocity, int axis, const std::array<int, 3>& face,
+                  double scale);
 
 // The velocity field moved by itself over dt, on faces that are known; zero elsewhere. Halos must be filled.
 void advectVelocity(const MacGrid& grid, const FaceField<double>& velocity,
