@@ -58,6 +58,35 @@ inline Eigen::Vector3d velocityAtCell(const Lattice& l, const FaceField<double>&
   return v;
 }
 
+// One row, four entries at a time where their stencils cannot leave the field: those that are wanted.
+template <class Wanted, class One, class FourFunction>
+void advectRow(const Lattice& l, int j, int k, int end, Wanted&& wanted, One&& one, FourFunction&& four, double* out) {
+  constexpr int kFour = 4;
+  const auto oneByOne = [&](int begin, int stop) {
+    for (int i = begin; i < stop; ++i) {
+      if (wanted(i)) out[i] = one(i);
+    }
+  };
+  if (j < 1 || j >= l.n[1] || k < 1 || k >= l.n[2] || l.n[0] <= kFour) {
+    oneByOne(0, end);
+    return;
+  }
+  oneByOne(0, 1);
+  for (int i = 1; i < l.n[0]; i += kFour) {
+    const int first = std::min(i, l.n[0] - kFour);  // the last four overlap those before
+    if (!(wanted(first) || wanted(first + 1) || wanted(first + 2) || wanted(first + 3))) continue;
+    Four moved;
+    if (!four(first, moved)) {
+      oneByOne(i, std::min(i + kFour, l.n[0]));
+      continue;
+    }
+    for (int q = i - first; q < kFour; ++q) {
+      if (wanted(first + q)) out[first + q] = moved[q];
+    }
+  }
+  oneByOne(l.n[0], end);
+}
+
 }  // namespace
 
 Eigen::Vector3d velocityAt(const Lattice& l, const FaceField<double>& velocity, const Eigen::Vector3d& position) {
@@ -129,42 +158,28 @@ double advectFace(const Lattice& l, const FaceField<double>& velocity, int axis,
   return sampleCubic(l, velocity[axis], traceBack(l, velocity, x, v, scale) - offset, true);
 }
 
+double advectCell(const Lattice& l, const FaceField<double>& velocity, const std::vector<double>& field,
+                  const std::array<int, 3>& cell, double scale) {
+  const Eigen::Vector3d offset = nodeOffset(-1);
+  const Eigen::Vector3d x = Eigen::Vector3d(cell[0], cell[1], cell[2]) + offset;
+  const Eigen::Vector3d v = velocityAtCell(l, velocity, l.index(cell[0], cell[1], cell[2]));
+  return sampleCubic(l, field, traceBack(l, velocity, x, v, scale) - offset, false);
+}
+
 void advectVelocity(const MacGrid& grid, const FaceField<double>& velocity,
                     const std::array<std::vector<std::uint8_t>, 3>& known, double dt, FaceField<double>& moved) {
   const Lattice& l = grid.lattice;
   const double scale = dt / grid.h;
-  constexpr int kFour = 4;
   for (int a = 0; a < 3; ++a) {
     moved[a].resize(l.size);
     std::fill(moved[a].begin(), moved[a].end(), 0.0);
     forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
       const std::uint8_t* mask = known[a].data() + row;
-      double* out = moved[a].data() + row;
-      const auto oneByOne = [&](int begin, int end) {
-        for (int i = begin; i < end; ++i) {
-          if (mask[i]) out[i] = advectFace(l, velocity, a, {i, j, k}, scale);
-        }
-      };
-      const int end = l.faceEnd(0);
-      const bool inside = j >= 1 && j < l.n[1] && k >= 1 && k < l.n[2] && l.n[0] > kFour;
-      if (!inside) {
-        oneByOne(0, end);
-        return;
-      }
-      oneByOne(0, 1);
-      for (int i = 1; i < l.n[0]; i += kFour) {
-        const int first = std::min(i, l.n[0] - kFour);  // the last four overlap those before
-        if (!(mask[first] | mask[first + 1] | mask[first + 2] | mask[first + 3])) continue;
-        Four four;
-        if (!advectFour(l, velocity, a, row + first, scale, four)) {
-          oneByOne(i, std::min(i + kFour, l.n[0]));
-          continue;
-        }
-        for (int q = i - first; q < kFour; ++q) {
-          if (mask[first + q]) out[first + q] = four[q];
-        }
-      }
-      oneByOne(l.n[0], end);
+      advectRow(
+          l, j, k, l.faceEnd(0), [&](int i) { return mask[i] != 0; },
+          [&](int i) { return advectFace(l, velocity, a, {i, j, k}, scale); },
+          [&](int i, Four& four) { return advectFour(l, velocity, a, row + i, scale, four); },
+          moved[a].data() + row);
     });
   }
 }
@@ -174,18 +189,15 @@ void advectCells(const MacGrid& grid, const FaceField<double>& velocity, const s
   const Lattice& l = grid.lattice;
   const double scale = dt / grid.h;
   moved = field;
-  const Eigen::Vector3d offset = nodeOffset(-1);
 #pragma omp parallel for schedule(static)
   for (int k = 0; k < l.n[2]; ++k) {
     for (int j = 0; j < l.n[1]; ++j) {
-      for (int i = 0; i < l.n[0]; ++i) {
-        const auto c = l.index(i, j, k);
-        if (std::abs(field[c]) > band) continue;
-        const Eigen::Vector3d x = Eigen::Vector3d(i, j, k) + offset;
-        const Eigen::Vector3d v = velocityAtCell(l, velocity, c);
-        const Eigen::Vector3d foot = traceBack(l, velocity, x, v, scale);
-        moved[c] = sampleCubic(l, field, foot - offset, false);
-      }
+      const auto row = l.index(0, j, k);
+      advectRow(
+          l, j, k, l.n[0], [&](int i) { return std::abs(field[row + i]) <= band; },
+          [&](int i) { return advectCell(l, velocity, field, {i, j, k}, scale); },
+          [&](int i, Four& four) { return advectFourCells(l, velocity, field, row + i, scale, four); },
+          moved.data() + row);
     }
   }
 }

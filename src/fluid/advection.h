@@ -21,6 +21,10 @@ void extrapolateVelocity(const Lattice& lattice, int layers, bool no_slip,
 double advectFace(const Lattice& lattice, const FaceField<double>& velocity, int axis, const std::array<int, 3>& face,
                   double scale);
 
+// Likewise a cell-centred field at a cell.
+double advectCell(const Lattice& lattice, const FaceField<double>& velocity, const std::vector<double>& field,
+                  const std::array<int, 3>& cell, double scale);
+
 // The velocity field moved by itself over dt, on faces that are known; zero elsewhere. Halos must be filled.
 void advectVelocity(const MacGrid& grid, const FaceField<double>& velocity,
                     const std::array<std::vector<std::uint8_t>, 3>& known, double dt, FaceField<double>& moved);

@@ -95,6 +95,15 @@ TEST(Advection, RowsMoveAsTheirFacesDo) {
       }
     }
     EXPECT_GT(largest, 0.5);
+    std::vector<double> cells;
+    advectCells(grid, u, u[1], 1.0, cells);
+    for (int k = 0; k < l.n[2]; ++k) {
+      for (int j = 0; j < l.n[1]; ++j) {
+        for (int i = 0; i < l.n[0]; ++i) {
+          EXPECT_NEAR(cells[l.index(i, j, k)], advectCell(l, u, u[1], {i, j, k}, 1.0), 1e-13);
+        }
+      }
+    }
   }
 }
 
