@@ -31,6 +31,20 @@ void closeHalo(const Lattice& l, int face_axis, std::vector<double>& distance) {
   fillHalo(l, distance);
 }
 
+// As out.resize(), but what buildCoefficients() writes anyway is not cleared first: it is most of the memory there is.
+void prepareToFill(const Lattice& l, bool viscous, StaggeredCoefficients<double>& out) {
+  const bool same = out.lattice.n == l.n && out.lattice.periodic == l.periodic && out.viscous == viscous &&
+                    out.has_pressure.size() == l.size;
+  if (!same) {
+    out.resize(l, viscous);
+    return;
+  }
+  for (auto& field : out.drag) {
+#pragma omp parallel for simd schedule(static)
+    for (std::size_t i = 0; i < field.size(); ++i) field[i] = 0.0;
+  }
+}
+
 // The viscous samples of one cell, whatever is around it.
 void buildSamples(const SampleBuilder& samples, double viscous_number, std::ptrdiff_t c,
                   StaggeredCoefficients<double>& out, StrainScales* strain) {
@@ -131,17 +145,17 @@ void StrainScales::fillHalos(const Lattice& l) {
 
 void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double viscous_number,
                        StaggeredCoefficients<double>& out, StrainScales* strain) {
-  out.resize(l, viscous_number > 0.0);
+  prepareToFill(l, viscous_number > 0.0, out);
   const auto& liquid = *geometry.liquid_distance;
   const int width = l.faceEnd(0);
   forEachRow(l, [&](std::ptrdiff_t row, int, int) {
-    for (auto f = row; f < row + width; ++f) {
-      for (int a = 0; a < 3; ++a) {
-        const double open = (*geometry.fluid)[a][f];
-        const double mass = open * liquidPart(liquid[f - l.stride[a]], liquid[f]);
-        if (!(mass > 0.0)) continue;
-        out.mass[a][f] = mass;
-        out.open[a][f] = open;
+    for (int a = 0; a < 3; ++a) {
+      const double* fluid = (*geometry.fluid)[a].data();
+      for (auto f = row; f < row + width; ++f) {
+        const double mass = fluid[f] * liquidPart(liquid[f - l.stride[a]], liquid[f]);
+        const bool moves = mass > 0.0;
+        out.mass[a][f] = moves ? mass : 0.0;
+        out.open[a][f] = moves ? fluid[f] : 0.0;
       }
     }
   });
@@ -153,10 +167,9 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
   forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
     if (j >= end[1] || k >= end[2]) return;
     for (auto c = row; c < row + end[0]; ++c) {
-      if (!isWet(liquid[c])) continue;
       double sum = 0.0;
       for (int a = 0; a < 3; ++a) sum += out.open[a][c] + out.open[a][c + l.stride[a]];
-      out.has_pressure[c] = sum > 0.0;
+      out.has_pressure[c] = isWet(liquid[c]) & (sum > 0.0);
     }
   });
   if (!out.viscous) return;
