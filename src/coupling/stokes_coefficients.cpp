@@ -13,6 +13,17 @@ namespace {
 constexpr double kLeastLiquid = 1e-3;  // cell widths
 
 bool isWet(double distance) { return distance < -kLeastLiquid; }
+
+// liquidPart(), in one expression for the vector units.
+inline double partOfSegment(double distance_low, double distance_high) {
+  const double wet = std::min(distance_low, distance_high);
+  const double dry = std::max(distance_low, distance_high);
+  // A dry cell may lie just below the surface: the part is then just above one, and liquid at rest stays so.
+  const double part = std::min(std::max(wet / (wet - dry), kLeastLiquid), 1.0 + 2.0 * kLeastLiquid);
+  const double cut = wet < -kLeastLiquid ? part : 0.0;
+  return dry < -kLeastLiquid ? 1.0 : cut;
+}
+
 constexpr double kLeastSliver = 0.05;
 constexpr double kDistanceCap = 2.5;   // cell widths; the fine distances are right at least up to here
 
@@ -77,7 +88,7 @@ void buildSamples(const SampleBuilder& samples, double viscous_number, std::ptrd
   }
 }
 
-// The same for the cells of a row that markPlain() found so; zero for the others.
+// The same for the cells of a row that markCells() found plain; zero for the others.
 void buildPlainRow(const SampleBuilder& samples, double viscous_number, std::ptrdiff_t row,
                    const std::vector<std::uint8_t>& mark, StaggeredCoefficients<double>& out) {
   const int width = static_cast<int>(mark.size());
@@ -89,7 +100,7 @@ void buildPlainRow(const SampleBuilder& samples, double viscous_number, std::ptr
   for (int a = 0; a < 3; ++a) normal[a] = out.normal[a].data() + row;
 #pragma omp simd
   for (int i = 0; i < width; ++i) {
-    const double value = m[i] == 0 ? number * part(d[i]) : 0.0;
+    const double value = m[i] == SampleBuilder::kPlain ? number * part(d[i]) : 0.0;
     normal[0][i] = value;
     normal[1][i] = value;
     normal[2][i] = value;
@@ -102,7 +113,7 @@ void buildPlainRow(const SampleBuilder& samples, double viscous_number, std::ptr
 #pragma omp simd
     for (int i = 0; i < width; ++i) {
       const double liquid = part(0.25 * (d[i] + d[i - sa] + d[i - sb] + d[i - sa - sb]));
-      const double weight = m[i] == 0 ? std::sqrt(viscous_number * liquid) : 0.0;
+      const double weight = m[i] == SampleBuilder::kPlain ? std::sqrt(viscous_number * liquid) : 0.0;
       first[i] = weight;
       second[i] = weight;
     }
@@ -120,16 +131,7 @@ std::vector<double> capped(const std::vector<double>& distance) {
 
 }  // namespace
 
-double liquidPart(double distance_low, double distance_high) {
-  const bool low = isWet(distance_low);
-  const bool high = isWet(distance_high);
-  if (low && high) return 1.0;
-  if (!low && !high) return 0.0;
-  const double wet = low ? distance_low : distance_high;
-  const double dry = low ? distance_high : distance_low;
-  // A dry cell may lie just below the surface: the part is then just above one, and liquid at rest stays so.
-  return std::clamp(wet / (wet - dry), kLeastLiquid, 1.0 + 2.0 * kLeastLiquid);
-}
+double liquidPart(double distance_low, double distance_high) { return partOfSegment(distance_low, distance_high); }
 
 void StrainScales::resize(const Lattice& l) {
   for (auto* fields : {&normal, &shear, &drag}) {
@@ -152,7 +154,7 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
     for (int a = 0; a < 3; ++a) {
       const double* fluid = (*geometry.fluid)[a].data();
       for (auto f = row; f < row + width; ++f) {
-        const double mass = fluid[f] * liquidPart(liquid[f - l.stride[a]], liquid[f]);
+        const double mass = fluid[f] * partOfSegment(liquid[f - l.stride[a]], liquid[f]);
         const bool moves = mass > 0.0;
         out.mass[a][f] = moves ? mass : 0.0;
         out.open[a][f] = moves ? fluid[f] : 0.0;
@@ -178,10 +180,10 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
   const SampleBuilder samples(l, geometry, out);
   forEachRow(l, [&](std::ptrdiff_t row, int, int) {
     thread_local std::vector<std::uint8_t> mark;
-    samples.markPlain(row, width, mark);
+    samples.markCells(row, width, mark);
     buildPlainRow(samples, viscous_number, row, mark, out);
     for (int i = 0; i < width; ++i) {
-      if (mark[i] == 0 && strain == nullptr) continue;
+      if (mark[i] == SampleBuilder::kAllAir || (mark[i] == SampleBuilder::kPlain && strain == nullptr)) continue;
       buildSamples(samples, viscous_number, row + i, out, strain);
     }
   });

@@ -67,12 +67,11 @@ void advectRow(const Lattice& l, int j, int k, int end, Wanted&& wanted, One&& o
       if (wanted(i)) out[i] = one(i);
     }
   };
-  if (j < 1 || j >= l.n[1] || k < 1 || k >= l.n[2] || l.n[0] <= kFour) {
+  if (j >= l.n[1] || k >= l.n[2] || l.n[0] < kFour) {
     oneByOne(0, end);
     return;
   }
-  oneByOne(0, 1);
-  for (int i = 1; i < l.n[0]; i += kFour) {
+  for (int i = 0; i < l.n[0]; i += kFour) {
     const int first = std::min(i, l.n[0] - kFour);  // the last four overlap those before
     if (!(wanted(first) || wanted(first + 1) || wanted(first + 2) || wanted(first + 3))) continue;
     Four moved;
@@ -171,15 +170,27 @@ void advectVelocity(const MacGrid& grid, const FaceField<double>& velocity,
   const Lattice& l = grid.lattice;
   const double scale = dt / grid.h;
   for (int a = 0; a < 3; ++a) {
-    moved[a].resize(l.size);
-    std::fill(moved[a].begin(), moved[a].end(), 0.0);
+    moved[a].assign(l.size, 0.0);
     forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
       const std::uint8_t* mask = known[a].data() + row;
+      const int at[3] = {0, j, k};
+      // Faces in a wall stay what they are.
+      const auto isWall = [&](int i) {
+        const int along = a == 0 ? i : at[a];
+        return !l.periodic[a] && (along == 0 || along == l.n[a]);
+      };
+      if (a != 0 && isWall(0)) {
+        for (int i = 0; i < l.faceEnd(0); ++i) moved[a][row + i] = mask[i] ? velocity[a][row + i] : 0.0;
+        return;
+      }
       advectRow(
-          l, j, k, l.faceEnd(0), [&](int i) { return mask[i] != 0; },
+          l, j, k, l.faceEnd(0), [&](int i) { return mask[i] != 0 && !(a == 0 && isWall(i)); },
           [&](int i) { return advectFace(l, velocity, a, {i, j, k}, scale); },
-          [&](int i, Four& four) { return advectFour(l, velocity, a, row + i, scale, four); },
+          [&](int i, Four& four) { return advectFour(l, velocity, a, {i, j, k}, scale, four); },
           moved[a].data() + row);
+      for (const int i : {0, l.n[0]}) {
+        if (a == 0 && isWall(i)) moved[a][row + i] = mask[i] ? velocity[a][row + i] : 0.0;
+      }
     });
   }
 }
@@ -196,7 +207,7 @@ void advectCells(const MacGrid& grid, const FaceField<double>& velocity, const s
       advectRow(
           l, j, k, l.n[0], [&](int i) { return std::abs(field[row + i]) <= band; },
           [&](int i) { return advectCell(l, velocity, field, {i, j, k}, scale); },
-          [&](int i, Four& four) { return advectFourCells(l, velocity, field, row + i, scale, four); },
+          [&](int i, Four& four) { return advectFourCells(l, velocity, field, {i, j, k}, scale, four); },
           moved.data() + row);
     }
   }

@@ -124,8 +124,9 @@ Four cubic(const double* u, const Lattice& l, const Four x[3], const Mask up[3])
 }
 
 template <int a>
-bool advect(const Lattice& l, const FaceField<double>& velocity, const double* field, std::ptrdiff_t f, double scale,
-            Four& moved) {
+bool advect(const Lattice& l, const FaceField<double>& velocity, const double* field, const std::array<int, 3>& first,
+            double scale, Four& moved) {
+  const auto f = l.index(first[0], first[1], first[2]);
   const double* u[3] = {velocity[0].data() + f, velocity[1].data() + f, velocity[2].data() + f};
   Four x[3];
   Mask far = {0, 0, 0, 0};
@@ -149,27 +150,31 @@ bool advect(const Lattice& l, const FaceField<double>& velocity, const double* f
   for (int d = 0; d < 3; ++d) {
     up[d] = foot[d] >= 0.0;
     together = together && (every(up[d]) || none(up[d]));
+    // There is one node below the first.
+    if (first[d] == 0 && !every(up[d])) return false;
     far |= (foot[d] > 1.0) | (foot[d] < -1.0);
   }
   if (any(far)) return false;
+  const bool lowest = first[0] == 0 || first[1] == 0 || first[2] == 0;
+  if (lowest && !together) return false;
   moved = together ? cubic<4, (a >= 0)>(field + f, l, foot, up) : cubic<5, (a >= 0)>(field + f, l, foot, up);
   return true;
 }
 
 }  // namespace
 
-bool advectFour(const Lattice& l, const FaceField<double>& velocity, int axis, std::ptrdiff_t face, double scale,
-                Four& moved) {
+bool advectFour(const Lattice& l, const FaceField<double>& velocity, int axis, const std::array<int, 3>& first,
+                double scale, Four& moved) {
   switch (axis) {
-    case 0: return advect<0>(l, velocity, velocity[0].data(), face, scale, moved);
-    case 1: return advect<1>(l, velocity, velocity[1].data(), face, scale, moved);
-    default: return advect<2>(l, velocity, velocity[2].data(), face, scale, moved);
+    case 0: return advect<0>(l, velocity, velocity[0].data(), first, scale, moved);
+    case 1: return advect<1>(l, velocity, velocity[1].data(), first, scale, moved);
+    default: return advect<2>(l, velocity, velocity[2].data(), first, scale, moved);
   }
 }
 
 bool advectFourCells(const Lattice& l, const FaceField<double>& velocity, const std::vector<double>& field,
-                     std::ptrdiff_t cell, double scale, Four& moved) {
-  return advect<-1>(l, velocity, field.data(), cell, scale, moved);
+                     const std::array<int, 3>& first, double scale, Four& moved) {
+  return advect<-1>(l, velocity, field.data(), first, scale, moved);
 }
 
 }  // namespace monolith
