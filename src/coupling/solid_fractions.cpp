@@ -170,6 +170,10 @@ void SolidSampler::sampleBody(const RigidBody& body, int index, SolidFractions& 
     }
   }
 
+  // A box longer than a period holds cells of the grid twice.
+  bool once = true;
+  for (int a = 0; a < 3; ++a) once = once && (!l.periodic[a] || f.count[a] <= l.n[a]);
+#pragma omp parallel for schedule(static) if (once)
   for (int k = 0; k < f.count[2]; ++k) {
     for (int j = 0; j < f.count[1]; ++j) {
       for (int i = 0; i < f.count[0]; ++i) {

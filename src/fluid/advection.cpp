@@ -58,6 +58,15 @@ inline Eigen::Vector3d velocityAtCell(const Lattice& l, const FaceField<double>&
   return v;
 }
 
+// The planes in turn to each thread: liquid may fill only the lowest.
+template <class RowFunction>
+void forEachRowInTurn(int end_j, int end_k, RowFunction&& f) {
+#pragma omp parallel for schedule(static, 1)
+  for (int k = 0; k < end_k; ++k) {
+    for (int j = 0; j < end_j; ++j) f(j, k);
+  }
+}
+
 // One row, four entries at a time where their stencils cannot leave the field: those that are wanted.
 template <class Wanted, class One, class FourFunction>
 void advectRow(const Lattice& l, int j, int k, int end, Wanted&& wanted, One&& one, FourFunction&& four, double* out) {
@@ -171,7 +180,8 @@ void advectVelocity(const MacGrid& grid, const FaceField<double>& velocity,
   const double scale = dt / grid.h;
   for (int a = 0; a < 3; ++a) {
     moved[a].assign(l.size, 0.0);
-    forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
+    forEachRowInTurn(l.faceEnd(1), l.faceEnd(2), [&](int j, int k) {
+      const auto row = l.index(0, j, k);
       const std::uint8_t* mask = known[a].data() + row;
       const int at[3] = {0, j, k};
       // Faces in a wall stay what they are.
@@ -200,17 +210,14 @@ void advectCells(const MacGrid& grid, const FaceField<double>& velocity, const s
   const Lattice& l = grid.lattice;
   const double scale = dt / grid.h;
   moved = field;
-#pragma omp parallel for schedule(static)
-  for (int k = 0; k < l.n[2]; ++k) {
-    for (int j = 0; j < l.n[1]; ++j) {
-      const auto row = l.index(0, j, k);
-      advectRow(
-          l, j, k, l.n[0], [&](int i) { return std::abs(field[row + i]) <= band; },
-          [&](int i) { return advectCell(l, velocity, field, {i, j, k}, scale); },
-          [&](int i, Four& four) { return advectFourCells(l, velocity, field, {i, j, k}, scale, four); },
-          moved.data() + row);
-    }
-  }
+  forEachRowInTurn(l.n[1], l.n[2], [&](int j, int k) {
+    const auto row = l.index(0, j, k);
+    advectRow(
+        l, j, k, l.n[0], [&](int i) { return std::abs(field[row + i]) <= band; },
+        [&](int i) { return advectCell(l, velocity, field, {i, j, k}, scale); },
+        [&](int i, Four& four) { return advectFourCells(l, velocity, field, {i, j, k}, scale, four); },
+        moved.data() + row);
+  });
 }
 
 }  // namespace monolith
