@@ -13,6 +13,7 @@ constexpr double kLeastFluid = 1e-3;  // a face with less of it is closed: no ti
 // A face's centre nearer to a surface than this, in cell widths, lies on it: what is left of its share of liquid would
 // be the only way into the cell behind it, a pivot as small as round-off.
 constexpr double kOnSurface = 1e-3;
+constexpr double kUncut = 0.9;  // cell widths: a surface farther than half the diagonal from its centre does not cut a cell
 constexpr int kMargin = 2;  // cells around a body in which its distance is wanted
 
 int wrapped(int index, int n) { return ((index % n) + n) % n; }
@@ -158,7 +159,11 @@ void SolidSampler::sampleBody(const RigidBody& body, int index, SolidFractions& 
           distance[a][c] = std::abs(at_face) < kOnSurface ? 0.0F : static_cast<float>(at_face);
         }
         std::array<double, 8> octants;
-        octantFractions(*body.distance, x_B, R_WB, h, octants);
+        if (std::abs(d) > kUncut) {
+          octants.fill(d < 0.0 ? 1.0 : 0.0);
+        } else {
+          octantFractions(*body.distance, x_B, R_WB, h, octants);
+        }
         double cell = 0.0;
         std::array<double, 6> half{};
         for (int o = 0; o < 8; ++o) {
@@ -171,6 +176,10 @@ void SolidSampler::sampleBody(const RigidBody& body, int index, SolidFractions& 
     }
   }
 
+  // A box longer than a period holds cells of the grid twice.
+  bool once = true;
+  for (int a = 0; a < 3; ++a) once = once && (!l.periodic[a] || f.count[a] <= l.n[a]);
+#pragma omp parallel for schedule(static) if (once)
   for (int k = 0; k < f.count[2]; ++k) {
     for (int j = 0; j < f.count[1]; ++j) {
       for (int i = 0; i < f.count[0]; ++i) {

@@ -36,9 +36,10 @@ class SampleBuilder {
     const auto sb = lattice.stride[b];
     return liquidOfCube(0.25 * (d[c] + d[c - sa] + d[c - sb] + d[c - sa - sb]));
   }
-  // Of a row of cells, whether the samples of each are plain: 0 if all faces that they join are in the liquid, far from
-  // any surface of a solid.
-  void markPlain(std::ptrdiff_t row, int width, std::vector<std::uint8_t>& mark) const;
+  // What a row of cells is like: plain if all faces that the samples of a cell join are in the liquid, far from any
+  // surface of a solid; air if all are in the air, where there are no samples.
+  enum Mark : std::uint8_t { kPlain, kMixed, kAllAir };
+  void markCells(std::ptrdiff_t row, int width, std::vector<std::uint8_t>& mark) const;
 
   const Lattice& lattice;
   const StokesGeometry& geometry;

@@ -82,7 +82,8 @@ void buildBodyRows(const MacGrid& grid, const SolidFractions& solids, const std:
   const int end_k = l.faceEnd(2);
   std::vector<BodyRows> slabs(end_k);
   const std::vector<char> near = nearBodies(l, solids);
-#pragma omp parallel for schedule(static)
+  // Bodies may lie together in a few slabs.
+#pragma omp parallel for schedule(dynamic)
   for (int k = 0; k < end_k; ++k) {
     BodyRows& slab = slabs[k];
     for (int j = 0; j < end_j; ++j) {

@@ -1,8 +1,10 @@
 #include "fluid/advection.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "fluid/interpolation.h"
+#include "fluid/row_advection.h"
 
 namespace monolith {
 namespace {
@@ -54,6 +56,43 @@ inline Eigen::Vector3d velocityAtCell(const Lattice& l, const FaceField<double>&
   Eigen::Vector3d v;
   for (int b = 0; b < 3; ++b) v[b] = 0.5 * (velocity[b][c] + velocity[b][c + l.stride[b]]);
   return v;
+}
+
+// The planes in turn to each thread: liquid may fill only the lowest.
+template <class RowFunction>
+void forEachRowInTurn(int end_j, int end_k, RowFunction&& f) {
+#pragma omp parallel for schedule(static, 1)
+  for (int k = 0; k < end_k; ++k) {
+    for (int j = 0; j < end_j; ++j) f(j, k);
+  }
+}
+
+// One row, four entries at a time where their stencils cannot leave the field: those that are wanted.
+template <class Wanted, class One, class FourFunction>
+void advectRow(const Lattice& l, int j, int k, int end, Wanted&& wanted, One&& one, FourFunction&& four, double* out) {
+  constexpr int kFour = 4;
+  const auto oneByOne = [&](int begin, int stop) {
+    for (int i = begin; i < stop; ++i) {
+      if (wanted(i)) out[i] = one(i);
+    }
+  };
+  if (j >= l.n[1] || k >= l.n[2] || l.n[0] < kFour) {
+    oneByOne(0, end);
+    return;
+  }
+  for (int i = 0; i < l.n[0]; i += kFour) {
+    const int first = std::min(i, l.n[0] - kFour);  // the last four overlap those before
+    if (!(wanted(first) || wanted(first + 1) || wanted(first + 2) || wanted(first + 3))) continue;
+    Four moved;
+    if (!four(first, moved)) {
+      oneByOne(i, std::min(i + kFour, l.n[0]));
+      continue;
+    }
+    for (int q = i - first; q < kFour; ++q) {
+      if (wanted(first + q)) out[first + q] = moved[q];
+    }
+  }
+  oneByOne(l.n[0], end);
 }
 
 }  // namespace
@@ -119,20 +158,48 @@ void extrapolateVelocity(const Lattice& l, int layers, bool no_slip, std::array<
   }
 }
 
+double advectFace(const Lattice& l, const FaceField<double>& velocity, int axis, const std::array<int, 3>& face,
+                  double scale) {
+  const Eigen::Vector3d offset = nodeOffset(axis);
+  const Eigen::Vector3d x = Eigen::Vector3d(face[0], face[1], face[2]) + offset;
+  const Eigen::Vector3d v = velocityAtFace(l, velocity, axis, l.index(face[0], face[1], face[2]));
+  return sampleCubic(l, velocity[axis], traceBack(l, velocity, x, v, scale) - offset, true);
+}
+
+double advectCell(const Lattice& l, const FaceField<double>& velocity, const std::vector<double>& field,
+                  const std::array<int, 3>& cell, double scale) {
+  const Eigen::Vector3d offset = nodeOffset(-1);
+  const Eigen::Vector3d x = Eigen::Vector3d(cell[0], cell[1], cell[2]) + offset;
+  const Eigen::Vector3d v = velocityAtCell(l, velocity, l.index(cell[0], cell[1], cell[2]));
+  return sampleCubic(l, field, traceBack(l, velocity, x, v, scale) - offset, false);
+}
+
 void advectVelocity(const MacGrid& grid, const FaceField<double>& velocity,
                     const std::array<std::vector<std::uint8_t>, 3>& known, double dt, FaceField<double>& moved) {
   const Lattice& l = grid.lattice;
   const double scale = dt / grid.h;
   for (int a = 0; a < 3; ++a) {
     moved[a].assign(l.size, 0.0);
-    const Eigen::Vector3d offset = nodeOffset(a);
-    forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
-      for (int i = 0; i < l.faceEnd(0); ++i) {
-        if (!known[a][row + i]) continue;
-        const Eigen::Vector3d x = Eigen::Vector3d(i, j, k) + offset;
-        const Eigen::Vector3d v = velocityAtFace(l, velocity, a, row + i);
-        const Eigen::Vector3d foot = traceBack(l, velocity, x, v, scale);
-        moved[a][row + i] = sampleCubic(l, velocity[a], foot - offset, true);
+    forEachRowInTurn(l.faceEnd(1), l.faceEnd(2), [&](int j, int k) {
+      const auto row = l.index(0, j, k);
+      const std::uint8_t* mask = known[a].data() + row;
+      const int at[3] = {0, j, k};
+      // Faces in a wall stay what they are.
+      const auto isWall = [&](int i) {
+        const int along = a == 0 ? i : at[a];
+        return !l.periodic[a] && (along == 0 || along == l.n[a]);
+      };
+      if (a != 0 && isWall(0)) {
+        for (int i = 0; i < l.faceEnd(0); ++i) moved[a][row + i] = mask[i] ? velocity[a][row + i] : 0.0;
+        return;
+      }
+      advectRow(
+          l, j, k, l.faceEnd(0), [&](int i) { return mask[i] != 0 && !(a == 0 && isWall(i)); },
+          [&](int i) { return advectFace(l, velocity, a, {i, j, k}, scale); },
+          [&](int i, Four& four) { return advectFour(l, velocity, a, {i, j, k}, scale, four); },
+          moved[a].data() + row);
+      for (const int i : {0, l.n[0]}) {
+        if (a == 0 && isWall(i)) moved[a][row + i] = mask[i] ? velocity[a][row + i] : 0.0;
       }
     });
   }
@@ -169,20 +236,14 @@ void advectCells(const MacGrid& grid, const FaceField<double>& velocity, const s
   const Lattice& l = grid.lattice;
   const double scale = dt / grid.h;
   moved = field;
-  const Eigen::Vector3d offset = nodeOffset(-1);
-#pragma omp parallel for schedule(static)
-  for (int k = 0; k < l.n[2]; ++k) {
-    for (int j = 0; j < l.n[1]; ++j) {
-      for (int i = 0; i < l.n[0]; ++i) {
-        const auto c = l.index(i, j, k);
-        if (std::abs(field[c]) > band) continue;
-        const Eigen::Vector3d x = Eigen::Vector3d(i, j, k) + offset;
-        const Eigen::Vector3d v = velocityAtCell(l, velocity, c);
-        const Eigen::Vector3d foot = traceBack(l, velocity, x, v, scale);
-        moved[c] = sampleCubic(l, field, foot - offset, false);
-      }
-    }
-  }
+  forEachRowInTurn(l.n[1], l.n[2], [&](int j, int k) {
+    const auto row = l.index(0, j, k);
+    advectRow(
+        l, j, k, l.n[0], [&](int i) { return std::abs(field[row + i]) <= band; },
+        [&](int i) { return advectCell(l, velocity, field, {i, j, k}, scale); },
+        [&](int i, Four& four) { return advectFourCells(l, velocity, field, {i, j, k}, scale, four); },
+        moved.data() + row);
+  });
 }
 
 }  // namespace monolith
