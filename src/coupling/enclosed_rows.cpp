@@ -50,6 +50,9 @@ Nearest findNearest(const Lattice& l, const std::vector<std::uint8_t>& has_press
   return out;
 }
 
+// A belt opens nothing: what leaves on one side comes from the wall or body behind it on the other.
+bool runsInPlace(const RigidBody& body) { return body.motion == BodyMotion::kPrescribed && body.prescribed.in_place; }
+
 }  // namespace
 
 std::vector<EnclosedWeight> moveEnclosedRows(const MacGrid& grid, const SolidFractions& solids,
@@ -72,7 +75,7 @@ std::vector<EnclosedWeight> moveEnclosedRows(const MacGrid& grid, const SolidFra
   const Nearest along = findNearest(l, coefficients.has_pressure, contact);
   const Nearest through = findNearest(l, coefficients.has_pressure, std::vector<char>(l.size, 1));
   for (const BodyRow& row : rows.enclosed) {
-    if (!(liquid_distance[row.sample] < 0.0)) continue;
+    if (!(liquid_distance[row.sample] < 0.0) || runsInPlace(bodies[row.body])) continue;
     const Nearest& nearest = along.cell[row.sample] >= 0 ? along : through;
     const auto q = nearest.cell[row.sample];
     if (q < 0) continue;

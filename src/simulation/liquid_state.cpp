@@ -38,7 +38,8 @@ void completeVelocity(const MacGrid& grid, const StepProblem& problem, const Sol
         if (wall_face) {
           known[a][f] = 1;
         } else if (no_slip) {
-          velocity[a][f] = bodies[owner].velocityAt(grid.faceCenter(a, i, j, k))[a];
+          const Eigen::Vector3d x = grid.faceCenter(a, i, j, k);
+          velocity[a][f] = bodies[owner].velocityAt(x + grid.toNearestImage(x, bodies[owner].p_WBcm))[a];
           known[a][f] = 1;
         }
       }

@@ -77,7 +77,7 @@ std::vector<Measurement> torque(double ratio, const Numerics& numerics, Meter& m
   BodyDescription outer = boxBody("outer", {1.0, 1.0, depth}, 1.0, middle);
   outer.shapes[0].kind = Shape::Kind::kMesh;
   outer.shapes[0].mesh = ring(b, 0.5, 4.0 * depth);
-  outer.motion = BodyMotion::kFixed;
+  moveInPlace(outer, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
   scene.bodies.push_back(outer);
   Simulation simulation(scene);
   const auto inner_torque = [&](const StepReport&) { return -simulation.bodyStates()[0].liquid.torque[2]; };
