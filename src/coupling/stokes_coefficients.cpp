@@ -29,9 +29,13 @@ class SampleBuilder {
     if (coefficients.mass[axis][f] > 0.0) return solid ? FaceKind::kSliver : FaceKind::kFluid;
     return solid || (*geometry.fluid)[axis][f] <= 0.0 ? FaceKind::kSolid : FaceKind::kAir;
   }
-  FittedSegment segment(int axis, std::ptrdiff_t a, std::ptrdiff_t b) const {
+  // Of component `axis`, from face a to the next along `along`.
+  FittedSegment segment(int axis, std::ptrdiff_t a, int along) const {
+    const auto b = a + lattice.stride[along];
     const auto& distance = (*geometry.solid_distance)[axis];
-    return fitSegment(kind(axis, a), distance[a], kind(axis, b), distance[b]);
+    const FaceKind kind_a = kind(axis, a), kind_b = kind(axis, b);
+    const bool cut = isSolid(kind_a) != isSolid(kind_b);
+    return fitSegment(kind_a, distance[a], kind_b, distance[b], cut ? sag(axis, a, along) : 0.0);
   }
   double liquidOfCell(std::ptrdiff_t c) const { return liquidOfCube((*geometry.liquid_distance)[c]); }
   double liquidOfEdge(std::ptrdiff_t c, int a, int b) const {
@@ -44,6 +48,21 @@ class SampleBuilder {
   const Lattice& lattice;
   const StokesGeometry& geometry;
   const StaggeredCoefficients<double>& coefficients;
+
+ private:
+  double sag(int axis, std::ptrdiff_t a, int along) const {
+    if (geometry.solid_cell_distance == nullptr) return 0.0;
+    const auto& cell = *geometry.solid_cell_distance;
+    const auto& distance = *geometry.solid_distance;
+    const auto b = a + lattice.stride[along];
+    const double mean = 0.5 * (distance[axis][a] + distance[axis][b]);
+    if (axis == along) return mean - cell[a];
+    // Half way is an edge. The faces of the other component there, minus the cells around: what is left of the second
+    // derivatives is that of the segment itself.
+    const auto low = b - lattice.stride[axis];
+    return 0.25 * (cell[a] + cell[b] + cell[low] + cell[low - lattice.stride[along]]) -
+           0.5 * (distance[along][low] + distance[along][b]);
+  }
 };
 
 // Beyond the walls: solid, half a cell from them. Along periodic axes the images.
@@ -164,7 +183,7 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
   forEachRow(l, [&](std::ptrdiff_t row, int, int) {
     for (auto c = row; c < row + width; ++c) {
       for (int a = 0; a < 3; ++a) {
-        const FittedSegment s = samples.segment(a, c, c + l.stride[a]);
+        const FittedSegment s = samples.segment(a, c, a);
         if (s.defined && !s.both_solid) {
           // eta |D_aa|^2: D^T D gives 2 N per unit weight; weight theta over theta^2.
           out.normal[a][c] = 2.0 * viscous_number * samples.liquidOfCell(c) / s.theta;
@@ -178,8 +197,8 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
       }
       for (int p = 0; p < 3; ++p) {
         const auto [a, b] = kShearPairs[p];
-        const FittedSegment s = samples.segment(a, c - l.stride[b], c);
-        const FittedSegment t = samples.segment(b, c - l.stride[a], c);
+        const FittedSegment s = samples.segment(a, c - l.stride[b], b);
+        const FittedSegment t = samples.segment(b, c - l.stride[a], a);
         if (!s.defined || !t.defined) continue;
         // eta 2 (1/2 (du + dv))^2, energy weight times N, its square root shared between the two differences.
         const auto& d = *geometry.solid_distance;
@@ -226,7 +245,7 @@ void buildBodyRows(const MacGrid& grid, const SolidFractions& solids, const std:
         for (int a = 0; a < 3; ++a) {
           const auto sa = l.stride[a];
           if (coefficients.normal[a][c] > 0.0) {
-            const FittedSegment s = samples.segment(a, c, c + sa);
+            const FittedSegment s = samples.segment(a, c, a);
             rows.addSegment(a, c, c + sa, grid.faceCenter(a, i, j, k), a, 1.0, s, c, slab.normal[a]);
           }
           if (coefficients.drag[a][c] > 0.0 && solids.owner[a][c] >= 0) {
@@ -247,8 +266,8 @@ void buildBodyRows(const MacGrid& grid, const SolidFractions& solids, const std:
           x_a[b] -= h;
           Eigen::Vector3d x_b = grid.faceCenter(b, i, j, k);
           x_b[a] -= h;
-          rows.addSegment(a, c - sb, c, x_a, b, factor_a, samples.segment(a, c - sb, c), c, slab.shear[p]);
-          rows.addSegment(b, c - sa, c, x_b, a, factor_b, samples.segment(b, c - sa, c), c, slab.shear[p]);
+          rows.addSegment(a, c - sb, c, x_a, b, factor_a, samples.segment(a, c - sb, b), c, slab.shear[p]);
+          rows.addSegment(b, c - sa, c, x_b, a, factor_b, samples.segment(b, c - sa, a), c, slab.shear[p]);
         }
       }
     }

@@ -1,5 +1,5 @@
-// Plane Stokes flow about an endless cylinder along the periodic axis z: drag midway between two walls, and torque inside a fixed
-// concentric ring (Taylor-Couette).
+// Plane Stokes flow about an endless cylinder along the periodic axis z: drag midway between two walls, and torque
+// inside a fixed concentric ring (Taylor-Couette).
 
 #include <cmath>
 #include <memory>
@@ -10,7 +10,8 @@
 namespace monolith {
 namespace {
 
-// Diameter over the channel's width, F/(4 pi mu U) per length: method of fundamental solutions; Faxen 1946 within 2e-5 up to 0.2.
+// Diameter over the channel's width, F/(4 pi mu U) per length: method of fundamental solutions; Faxen 1946 within 2e-5
+// up to 0.2.
 struct Row {
   double ratio, drag;
 };
@@ -116,7 +117,8 @@ std::vector<Variant> variants(Extent extent) {
     sweep.fractions = full;
     char name[64];
     std::snprintf(name, sizeof name, "Taylor-Couette, radii 1:%g", 1.0 / ratio);
-    addSweep(name, sweep, [ratio](const Numerics& n, Meter& meter) { return torque(ratio, n, meter); }, out);
+    addSweep(
+        name, sweep, [ratio](const Numerics& n, Meter& meter) { return torque(ratio, n, meter); }, out);
   }
   return out;
 }
