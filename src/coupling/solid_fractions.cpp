@@ -107,10 +107,10 @@ void SolidSampler::sampleBody(const RigidBody& body, int index, SolidFractions& 
   const Eigen::AlignedBox3d box = body.distance->bounds().transformed(X_WB);
 
   BodyFractions& f = out.bodies[index];
-  bool endless[3] = {false, false, false};
   for (int a = 0; a < 3; ++a) {
     const double low = (box.min()[a] - grid_.origin[a]) / h;
     const double high = (box.max()[a] - grid_.origin[a]) / h;
+    f.endless[a] = false;
     int first = static_cast<int>(std::floor(std::clamp(low, -1e6, 1e6))) - kMargin;
     int last = static_cast<int>(std::floor(std::clamp(high, -1e6, 1e6))) + kMargin;
     if (!l.periodic[a]) {
@@ -120,7 +120,7 @@ void SolidSampler::sampleBody(const RigidBody& body, int index, SolidFractions& 
       // Longer than the tank's period: endless, and one period of it counts, far from where the shape ends.
       first += (last - first + 1 - l.n[a]) / 2;
       last = first + l.n[a] - 1;
-      endless[a] = true;
+      f.endless[a] = true;
     }
     f.low[a] = first;
     f.count[a] = std::max(0, last - first + 1);
@@ -188,9 +188,9 @@ void SolidSampler::sampleBody(const RigidBody& body, int index, SolidFractions& 
         const std::array<int, 3> at = {i, j, k};
         for (int a = 0; a < 3; ++a) {
           double low_part = 0.0;
-          if (at[a] > 0 || endless[a]) {
-            std::array<int, 3> before = at;
-            before[a] = (at[a] > 0 ? at[a] : f.count[a]) - 1;
+          std::array<int, 3> before = at;
+          before[a] = f.within(a, at[a] - 1);
+          if (before[a] >= 0) {
             low_part = halves[f.local(before[0], before[1], before[2])][2 * a + 1];
           }
           f.face[a][c] = 0.5 * (low_part + halves[c][2 * a]);

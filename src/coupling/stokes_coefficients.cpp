@@ -61,7 +61,7 @@ void buildSamples(const SampleBuilder& samples, double viscous_number, std::ptrd
                   StaggeredCoefficients<double>& out, StrainScales* strain) {
   const Lattice& l = samples.lattice;
   for (int a = 0; a < 3; ++a) {
-    const FittedSegment s = samples.segment(a, c, c + l.stride[a]);
+    const FittedSegment s = samples.segment(a, c, a);
     if (s.defined && !s.both_solid) {
       // eta |D_aa|^2: D^T D gives 2 N per unit weight; weight theta over theta^2.
       out.normal[a][c] = 2.0 * viscous_number * samples.liquidOfCell(c) / s.theta;
@@ -75,8 +75,8 @@ void buildSamples(const SampleBuilder& samples, double viscous_number, std::ptrd
   }
   for (int p = 0; p < 3; ++p) {
     const auto [a, b] = kShearPairs[p];
-    const FittedSegment s = samples.segment(a, c - l.stride[b], c);
-    const FittedSegment t = samples.segment(b, c - l.stride[a], c);
+    const FittedSegment s = samples.segment(a, c - l.stride[b], b);
+    const FittedSegment t = samples.segment(b, c - l.stride[a], a);
     if (!s.defined || !t.defined) continue;
     // eta 2 (1/2 (du + dv))^2, energy weight times N, its square root shared between the two differences.
     const auto& d = *samples.geometry.solid_distance;

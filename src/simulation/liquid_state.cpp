@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "fluid/advection.h"
 
@@ -60,6 +61,24 @@ MacGrid makeGrid(const TankDescription& tank, const LiquidDescription& liquid) {
   return grid;
 }
 
+void setVelocity(const MacGrid& grid, const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& velocity,
+                 FaceField<double>& faces) {
+  const Lattice& l = grid.lattice;
+  for (int a = 0; a < 3; ++a) {
+    faces[a].assign(l.size, 0.0);
+    for (int k = 0; k < l.faceEnd(2); ++k) {
+      for (int j = 0; j < l.faceEnd(1); ++j) {
+        for (int i = 0; i < l.faceEnd(0); ++i) {
+          const Eigen::Vector3d u = velocity(grid.faceCenter(a, i, j, k));
+          if (!u.allFinite()) throw std::invalid_argument("velocity of the liquid: expected finite numbers");
+          faces[a][l.index(i, j, k)] = u[a];
+        }
+      }
+    }
+    fillHalo(l, faces[a]);
+  }
+}
+
 void completeVelocity(const MacGrid& grid, const StepProblem& problem, const SolidFractions& solids,
                       const std::vector<RigidBody>& bodies, int layers, bool no_slip,
                       const std::array<std::vector<std::uint8_t>, 3>* usable, FaceField<double>& velocity,
@@ -81,7 +100,8 @@ void completeVelocity(const MacGrid& grid, const StepProblem& problem, const Sol
         if (wall_face) {
           known[a][f] = 1;
         } else if (no_slip) {
-          velocity[a][f] = bodies[owner].velocityAt(grid.faceCenter(a, i, j, k))[a];
+          const Eigen::Vector3d x = grid.faceCenter(a, i, j, k);
+          velocity[a][f] = bodies[owner].velocityAt(x + grid.toNearestImage(x, bodies[owner].p_WBcm))[a];
           known[a][f] = 1;
         }
       }

@@ -17,9 +17,12 @@ bool same(const Numerics& a, const Numerics& b) {
 
 const char* toString(SolverName name) {
   switch (name) {
-    case SolverName::kFast: return "fast";
-    case SolverName::kDirect: return "direct";
-    case SolverName::kReference: return "reference";
+    case SolverName::kFast:
+      return "fast";
+    case SolverName::kDirect:
+      return "direct";
+    case SolverName::kReference:
+      return "reference";
   }
   return "";
 }
@@ -30,9 +33,8 @@ const char* toString(Discretisation discretisation) {
 
 bool Run::good() const {
   if (!failure.empty()) return false;
-  return !judged || std::all_of(measurements.begin(), measurements.end(), [](const Measurement& m) {
-    return m.goal == 0.0 || std::abs(m.error()) <= m.goal;
-  });
+  return !judged || std::all_of(measurements.begin(), measurements.end(),
+                                [](const Measurement& m) { return m.goal == 0.0 || std::abs(m.error()) <= m.goal; });
 }
 
 std::vector<Variant> variantsOf(const Case& what, Extent extent, const Overrides& overrides) {

@@ -1,5 +1,5 @@
-// A box on a slope, dry and in liquid that is at rest: the angle at which it begins to slide, that it rests below it, and how
-// far it slides above it. The tank is tilted: gravity turns.
+// A box on a slope, dry and in liquid that is at rest: the angle at which it begins to slide, that it rests below it,
+// and how far it slides above it. The tank is tilted: gravity turns.
 
 #include <algorithm>
 #include <cmath>
