@@ -9,6 +9,8 @@ namespace {
 
 // Below this the mass term dominates and one smoothing sweep on the level is a solve.
 constexpr double kLeastViscousNumber = 0.05;
+// Up to here the projection takes fewer iterations.
+constexpr double kLargestProjected = 20.0;
 
 float removeMean(const std::vector<std::ptrdiff_t>& cells, float* field) {
   const auto size = static_cast<std::ptrdiff_t>(cells.size());
@@ -44,6 +46,16 @@ void LiquidPreconditioner::set(const StepProblem& problem, const FaceBlocks<floa
   if (problem.coefficients.viscous) velocity_.set(l, faces, std::move(transfer), problem.coarse, levels);
   pressure_.set(l, problem.coefficients.has_pressure, std::move(conductance));
   g_.assign(l.size, 0.0f);
+  weight_.assign(l.size, 0.0f);
+  if (!problem.coefficients.viscous) return;
+  const auto& normal = problem.coefficients.normal;
+  forEachRow(l, [&](std::ptrdiff_t row, int, int) {
+    for (auto c = row; c < row + l.n[0]; ++c) {
+      const double ratio = problem.cell_viscosity.empty() ? 1.0 : problem.cell_viscosity[c];
+      const double mean = (normal[0][c] + normal[1][c] + normal[2][c]) / 3.0;
+      weight_[c] = static_cast<float>(std::min(mean, 2.0 * ratio * problem.viscous_number));
+    }
+  });
 }
 
 void LiquidPreconditioner::apply(const float* r, float* x) {
@@ -76,18 +88,15 @@ void LiquidPreconditioner::apply(const float* r, float* x) {
     ++sealed;
   }
   if (sealed > 0) fillHalo(l, phi);
-  project(l, *faces_, u, phi, out);
-  float* p = x + 3 * size;
-  const float twice = 2.0f * static_cast<float>(problem_->viscous_number);
-  const float* g = g_.data();
-  if (problem_->cell_viscosity.empty()) {
-#pragma omp parallel for simd schedule(static)
-    for (std::ptrdiff_t i = 0; i < size; ++i) p[i] = phi[i] + twice * g[i];
+  if (problem_->viscous_number <= kLargestProjected) {
+    project(l, *faces_, u, phi, out);
   } else {
-    const float* ratio = problem_->cell_viscosity.data();
-#pragma omp parallel for simd schedule(static)
-    for (std::ptrdiff_t i = 0; i < size; ++i) p[i] = phi[i] + twice * ratio[i] * g[i];
+    for (int a = 0; a < 3; ++a) std::copy_n(u[a], size, out[a]);
   }
+  float* p = x + 3 * size;
+  const float *g = g_.data(), *weight = weight_.data();
+#pragma omp parallel for simd schedule(static)
+  for (std::ptrdiff_t i = 0; i < size; ++i) p[i] = phi[i] + weight[i] * g[i];
   for (float* field : {x, x + size, x + 2 * size, p}) fillHalo(l, field);
 }
 

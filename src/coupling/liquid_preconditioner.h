@@ -1,6 +1,15 @@
 #pragma once
-// Projection preconditioner of the liquid's own block [A_uu, -C^T; -C, 0], in single precision: one multigrid cycle on
-// A_uu, one on L = C mass^-1 C^T with p^ = phi + 2 N g (Cahouet & Chabard 1988). Linear: the same map on every call.
+// Preconditioner of the liquid's own block [A, -C^T; -C, 0], in single precision. Linear: the same map on every call.
+//
+//   u* = A^-1 r_u                        one multigrid cycle
+//   g = -r_p - C u*
+//   p = L^-1 g + w g                     one multigrid cycle on L = C mass^-1 C^T; Cahouet & Chabard (1988)
+//   u = u* + mass^-1 C^T L^-1 g          where inertia counts: the projection method (Griffith 2009; Cai et al. 2014)
+//   u = u*                               where viscosity rules: block triangular
+//
+// w = 2 N times the part of the cell's normal stress that is in the liquid: next to a free surface the Schur complement is
+// as much softer. The projection is exact without viscosity; with much of it, it leaves strong stresses at boundaries,
+// and its iterations grow with N, while those of the triangular form do not.
 
 #include <vector>
 
@@ -21,7 +30,7 @@ class LiquidPreconditioner {
   // x ~ the solution for right side r: U by components, then p^, lattice.size each. Halos of x are filled, those of r not read.
   void apply(const float* r, float* x);
 
-  std::size_t bytes() const { return velocity_.bytes() + pressure_.bytes() + g_.size() * sizeof(float); }
+  std::size_t bytes() const { return velocity_.bytes() + pressure_.bytes() + 2 * g_.size() * sizeof(float); }
 
  private:
   const StepProblem* problem_ = nullptr;
@@ -29,7 +38,7 @@ class LiquidPreconditioner {
   const CellBlocks<float>* cells_ = nullptr;
   VelocityMultigrid velocity_;
   PressureMultigrid pressure_;
-  std::vector<float> g_;
+  std::vector<float> g_, weight_;
 };
 
 }  // namespace monolith
