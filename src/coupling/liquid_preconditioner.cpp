@@ -11,6 +11,9 @@ namespace {
 constexpr double kLeastViscousNumber = 0.05;
 // Up to here the projection takes fewer iterations.
 constexpr double kLargestProjected = 20.0;
+// Beyond, more smoothing pays: fewer vectors to orthogonalise.
+constexpr int kSmootherDegree = 2;
+constexpr int kViscousSmootherDegree = 4;
 
 float removeMean(const std::vector<std::ptrdiff_t>& cells, float* field) {
   const auto size = static_cast<std::ptrdiff_t>(cells.size());
@@ -43,7 +46,10 @@ void LiquidPreconditioner::set(const StepProblem& problem, const FaceBlocks<floa
     ++levels;
     number *= 0.25;
   }
-  if (problem.coefficients.viscous) velocity_.set(l, faces, std::move(transfer), problem.coarse, levels);
+  if (problem.coefficients.viscous) {
+    velocity_.set(l, faces, std::move(transfer), problem.coarse, levels,
+                  problem.viscous_number > kLargestProjected ? kViscousSmootherDegree : kSmootherDegree);
+  }
   pressure_.set(l, problem.coefficients.has_pressure, std::move(conductance));
   g_.assign(l.size, 0.0f);
   weight_.assign(l.size, 0.0f);

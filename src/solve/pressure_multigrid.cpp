@@ -7,7 +7,7 @@
 namespace monolith {
 namespace {
 
-constexpr int kSmootherDegree = 3;
+constexpr int kSmootherDegree = 2;
 constexpr float kRatio = 6.0f;
 constexpr int kCoarsestDegree = 24;  // where there are too many cells to be solved directly
 constexpr float kCoarsestRatio = 100.0f;
@@ -94,7 +94,8 @@ void PressureMultigrid::coarsen(const Lattice& from, const Network& fine, const 
 
 void PressureMultigrid::finish(const Network& network, Level& level) const {
   const Lattice& l = level.lattice;
-  for (auto* field : {&level.x, &level.next, &level.d, &level.mask, &level.b}) field->assign(l.size, 0.0f);
+  for (auto* field : {&level.x, &level.next, &level.d, &level.mask}) field->assign(l.size, 0.0f);
+  if (&level != &levels_[0]) level.b.assign(l.size, 0.0f);
   level.blocks.build(l, {0}, [&](int, std::ptrdiff_t row, int width, auto& k) {
     for (int i = 0; i < width; ++i) {
       const auto c = row + i;

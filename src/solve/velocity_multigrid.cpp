@@ -5,7 +5,6 @@
 namespace monolith {
 namespace {
 
-constexpr int kSmootherDegree = 2;
 constexpr int kCoarsestDegree = 12;
 constexpr float kRatio = 6.0f;
 constexpr float kCoarsestRatio = 60.0f;  // the coarsest level is to be solved, not smoothed
@@ -16,7 +15,9 @@ Faces<const float> constView(FaceField<float>& f) { return {f[0].data(), f[1].da
 }  // namespace
 
 void VelocityMultigrid::set(const Lattice& lattice, const FaceBlocks<float>& fine, FaceField<float>&& transfer,
-                            const std::vector<StaggeredCoefficients<float>>& coarse, std::size_t count) {
+                            const std::vector<StaggeredCoefficients<float>>& coarse, std::size_t count,
+                            int smoother_degree) {
+  degree_ = smoother_degree;
   levels_.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     Level& level = levels_[i];
@@ -59,10 +60,10 @@ void VelocityMultigrid::smooth(Level& level, int degree, bool from_zero) {
 void VelocityMultigrid::descend(std::size_t index) {
   Level& level = levels_[index];
   if (index + 1 == levels_.size()) {
-    smooth(level, levels_.size() == 1 ? 2 * kSmootherDegree : kCoarsestDegree, true);
+    smooth(level, levels_.size() == 1 ? 2 * degree_ : kCoarsestDegree, true);
     return;
   }
-  smooth(level, kSmootherDegree, true);
+  smooth(level, degree_, true);
   const Lattice& l = level.lattice;
   Level& coarse = levels_[index + 1];
   transferredResidual(l, *level.blocks, constView(level.x), level.right, view(level.next));
@@ -76,7 +77,7 @@ void VelocityMultigrid::descend(std::size_t index) {
     prolongateFaces(coarse.lattice, a, coarse.x[a].data(), l, level.transfer[a].data(), level.x[a].data());
     fillHalo(l, level.x[a]);
   }
-  smooth(level, kSmootherDegree, false);
+  smooth(level, degree_, false);
 }
 
 Faces<const float> VelocityMultigrid::cycle(const Faces<const float>& b) {

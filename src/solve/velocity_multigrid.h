@@ -14,12 +14,9 @@ namespace monolith {
 class VelocityMultigrid {
  public:
   // The finest level with its transfer weights, and the levels below it: coarse[1] to coarse[count - 1], each
-  // coarsened() of the one before. `fine` must outlive the multigrid.
+  // coarsened() of the one before. `fine` must outlive the multigrid. smoother_degree: Chebyshev steps before and after.
   void set(const Lattice& lattice, const FaceBlocks<float>& fine, FaceField<float>&& transfer,
-           const std::vector<StaggeredCoefficients<float>>& coarse, std::size_t count);
-  // The field of weights again, for its memory.
-  FaceField<float> takeTransfer() { return levels_.empty() ? FaceField<float>() : std::move(levels_[0].transfer); }
-
+           const std::vector<StaggeredCoefficients<float>>& coarse, std::size_t count, int smoother_degree);
   // Approximate solution x of A x = b, zero where there is no unknown; valid until the next call.
   Faces<const float> cycle(const Faces<const float>& b);
 
@@ -39,6 +36,7 @@ class VelocityMultigrid {
   void descend(std::size_t index);
 
   std::vector<Level> levels_;
+  int degree_ = 2;
 };
 
 }  // namespace monolith
