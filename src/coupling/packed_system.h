@@ -1,6 +1,6 @@
 #pragma once
 // The step's linear system as `fast` solves it: all unknowns in one vector - U by components, p^, lattice.size each, the
-// twists of the free bodies times their scale, the impulses of the contacts in the border - and GMRES with its
+// twists of the free bodies times their scale, the impulses of the contacts in the border - and flexible GMRES with its
 // preconditioner: the liquid's (liquid_preconditioner.h), then an approximate Schur complement S of the bodies, their inertia
 // and their resistance to motion in this liquid, bordered by the contacts. S ages slowly and is kept while it serves.
 
@@ -11,7 +11,7 @@
 #include "coupling/contact_states.h"
 #include "coupling/liquid_preconditioner.h"
 #include "coupling/step_solver.h"
-#include "solve/refined_gmres.h"
+#include "solve/fgmres.h"
 
 namespace monolith {
 
@@ -68,7 +68,7 @@ class PackedSystem {
   BodyColumns<double> columns_;
   BodyColumns<float> columns_single_;
   LiquidPreconditioner preconditioner_;
-  RefinedGmres krylov_;
+  Fgmres krylov_;
   Eigen::VectorXd scale_;       // unknown = scale * twist
   Eigen::MatrixXd bodies_;      // A_vv with inertia
   Eigen::MatrixXd resistance_;  // of the free bodies, physical units

@@ -7,7 +7,7 @@
 namespace monolith {
 namespace {
 
-constexpr int kSmootherDegree = 2;
+constexpr int kSmootherDegree = 3;
 constexpr float kRatio = 6.0f;
 constexpr int kCoarsestDegree = 24;  // where there are too many cells to be solved directly
 constexpr float kCoarsestRatio = 100.0f;

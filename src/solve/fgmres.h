@@ -1,8 +1,8 @@
 #pragma once
-// GMRES (Saad & Schultz 1986), right preconditioned by a linear map, inside iterative refinement: the residual b - A x is
-// formed in double precision at each restart, the correction P^-1 V y is found in single precision on vectors half as
-// wide. Only the basis V is kept; the preconditioner is applied once more at the end of a cycle. Minimises |b - A x|_2 over
-// each cycle; the residual that it reports is the recomputed one.
+// Flexible GMRES (Saad 1993, SIAM J. Sci. Comput. 14, 461), right preconditioned, inside iterative refinement: the
+// residual b - A x is formed in double precision at each restart, the correction is found in single precision on vectors
+// half as wide. Keeping the directions P^-1 v beside the basis costs memory and pays: the operator sees their rounding,
+// where a correction P^-1 (V y) formed at the end carries that of a large, smooth pressure into the solution. Minimises |b - A x|_2 over each cycle; the residual that it reports is the recomputed one.
 
 #include <Eigen/Dense>
 #include <functional>
@@ -13,7 +13,7 @@ namespace monolith {
 struct KrylovOptions {
   double absolute_tolerance = 0.0;  // on |b - A x|_2
   int maximum_iterations = 200;
-  int restart = 24;  // basis vectors kept; memory grows only as they are used
+  int restart = 24;  // directions kept; memory grows only as they are used
 };
 
 struct KrylovReport {
@@ -30,7 +30,7 @@ struct KrylovMaps {
   std::function<void(std::vector<float>& x, std::vector<float>& y)> precondition;
 };
 
-class RefinedGmres {
+class Fgmres {
  public:
   // x holds the initial guess on entry, the solution on return. Work space is kept between calls.
   [[nodiscard]] KrylovReport solve(const KrylovMaps& maps, const std::vector<double>& b, std::vector<double>& x,
@@ -40,13 +40,11 @@ class RefinedGmres {
 
  private:
   double residual(const KrylovMaps& maps, const std::vector<double>& b, std::vector<double>& x);
-  // One cycle on the residual in work_, until it is `goal` times as large; returns the coefficients y of the basis.
+  // One cycle on the residual in work_, until it is `goal` times as large; returns the coefficients of the directions.
   Eigen::VectorXd cycle(const KrylovMaps& maps, double norm, double goal, int most);
-  // x += P^-1 V y
-  void correct(const KrylovMaps& maps, const Eigen::VectorXd& y, std::vector<double>& x);
 
-  std::vector<std::vector<float>> basis_;  // V
-  std::vector<float> direction_;           // P^-1 v
+  std::vector<std::vector<float>> basis_;       // V
+  std::vector<std::vector<float>> directions_;  // Z = P^-1 V
   std::vector<double> work_;
 };
 

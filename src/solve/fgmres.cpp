@@ -1,4 +1,4 @@
-#include "solve/refined_gmres.h"
+#include "solve/fgmres.h"
 
 #include <cmath>
 
@@ -40,16 +40,15 @@ double subtract(const std::vector<float>* v, double a, const std::vector<float>&
   });
 }
 
-// x = sum_v coefficient[v] basis[v]
-void combine(const std::vector<std::vector<float>>& basis, const Eigen::VectorXd& coefficient, std::vector<float>& x) {
+// x += sum_v coefficient[v] z[v]
+void combine(const std::vector<std::vector<float>>& z, const Eigen::VectorXd& coefficient, std::vector<double>& x) {
   const auto size = static_cast<std::ptrdiff_t>(x.size());
 #pragma omp parallel for schedule(static)
   for (std::ptrdiff_t begin = 0; begin < size; begin += kSumBlock) {
     const auto end = std::min(size, begin + kSumBlock);
-    std::fill(x.begin() + begin, x.begin() + end, 0.0f);
     for (int v = 0; v < coefficient.size(); ++v) {
-      const float* q = basis[v].data();
-      const auto a = static_cast<float>(coefficient[v]);
+      const float* q = z[v].data();
+      const double a = coefficient[v];
 #pragma omp simd
       for (std::ptrdiff_t i = begin; i < end; ++i) x[i] += a * q[i];
     }
@@ -65,7 +64,7 @@ void scaleInto(const std::vector<Real>& x, double a, std::vector<float>& y) {
 
 }  // namespace
 
-double RefinedGmres::residual(const KrylovMaps& maps, const std::vector<double>& b, std::vector<double>& x) {
+double Fgmres::residual(const KrylovMaps& maps, const std::vector<double>& b, std::vector<double>& x) {
   work_.resize(b.size());
   maps.apply(x, work_);
   return std::sqrt(blockedSum<double>(b.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -79,27 +78,25 @@ double RefinedGmres::residual(const KrylovMaps& maps, const std::vector<double>&
   }));
 }
 
-Eigen::VectorXd RefinedGmres::cycle(const KrylovMaps& maps, double norm, double goal, int most) {
+Eigen::VectorXd Fgmres::cycle(const KrylovMaps& maps, double norm, double goal, int most) {
   Eigen::MatrixXd hessenberg = Eigen::MatrixXd::Zero(most + 1, most);
   Eigen::VectorXd rhs = Eigen::VectorXd::Zero(most + 1);
   std::vector<Eigen::JacobiRotation<double>> rotations(most);
   rhs[0] = 1.0;
-  const auto room = [&](int index) -> std::vector<float>& {
-    if (static_cast<int>(basis_.size()) <= index) basis_.resize(index + 1);
-    // Zero where maps do not write.
-    if (basis_[index].size() != work_.size()) basis_[index].assign(work_.size(), 0.0f);
-    return basis_[index];
+  const auto room = [&](auto& vectors, int index) -> std::vector<float>& {
+    if (static_cast<int>(vectors.size()) <= index) vectors.resize(index + 1);
+    if (vectors[index].size() != work_.size()) vectors[index].assign(work_.size(), 0.0f);
+    return vectors[index];
   };
-  if (direction_.size() != work_.size()) direction_.assign(work_.size(), 0.0f);
-  scaleInto(work_, 1.0 / norm, room(0));
+  scaleInto(work_, 1.0 / norm, room(basis_, 0));
   int used = 0;
   bool stop = false;
   while (used < most && !stop) {
     const int j = used;
-    room(j + 1);
-    maps.precondition(basis_[j], direction_);
+    room(basis_, j + 1);
+    maps.precondition(basis_[j], room(directions_, j));
     std::vector<float>& w = basis_[j + 1];
-    maps.apply_single(direction_, w);
+    maps.apply_single(directions_[j], w);
     Eigen::VectorXd h(j + 1);
     h[0] = subtract(nullptr, 0.0, basis_[0], w);
     for (int i = 0; i < j; ++i) h[i + 1] = subtract(&basis_[i], h[i], basis_[i + 1], w);
@@ -118,18 +115,7 @@ Eigen::VectorXd RefinedGmres::cycle(const KrylovMaps& maps, double norm, double 
   return norm * hessenberg.topLeftCorner(used, used).triangularView<Eigen::Upper>().solve(rhs.head(used));
 }
 
-void RefinedGmres::correct(const KrylovMaps& maps, const Eigen::VectorXd& y, std::vector<double>& x) {
-  // The vector after those that y speaks of has served.
-  std::vector<float>& sum = basis_[y.size()];
-  const double size = y.norm();  // keeps single precision in its range
-  if (!(size > 0.0)) return;
-  combine(basis_, y / size, sum);
-  maps.precondition(sum, direction_);
-#pragma omp parallel for simd schedule(static)
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] += size * direction_[i];
-}
-
-KrylovReport RefinedGmres::solve(const KrylovMaps& maps, const std::vector<double>& b, std::vector<double>& x,
+KrylovReport Fgmres::solve(const KrylovMaps& maps, const std::vector<double>& b, std::vector<double>& x,
                            const KrylovOptions& options) {
   KrylovReport report;
   report.residual = report.initial_residual = residual(maps, b, x);
@@ -140,7 +126,7 @@ KrylovReport RefinedGmres::solve(const KrylovMaps& maps, const std::vector<doubl
     const Eigen::VectorXd y = cycle(maps, report.residual, goal, most);
     report.iterations += static_cast<int>(y.size());
     if (!y.allFinite()) break;
-    correct(maps, y, x);
+    combine(directions_, y, x);
     const double last = report.residual;
     report.residual = residual(maps, b, x);
     report.converged = report.residual <= options.absolute_tolerance;
@@ -150,9 +136,11 @@ KrylovReport RefinedGmres::solve(const KrylovMaps& maps, const std::vector<doubl
   return report;
 }
 
-std::size_t RefinedGmres::bytes() const {
-  std::size_t sum = work_.size() * sizeof(double) + direction_.size() * sizeof(float);
-  for (const auto& v : basis_) sum += v.size() * sizeof(float);
+std::size_t Fgmres::bytes() const {
+  std::size_t sum = work_.size() * sizeof(double);
+  for (const auto* vectors : {&basis_, &directions_}) {
+    for (const auto& v : *vectors) sum += v.size() * sizeof(float);
+  }
   return sum;
 }
 
