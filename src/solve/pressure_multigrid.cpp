@@ -14,6 +14,13 @@ constexpr float kCoarsestRatio = 100.0f;
 constexpr std::size_t kDirectCells = 216;
 // Of the diagonal: makes a sealed tank's network definite. Its right sides hold no constant but for round-off.
 constexpr double kShift = 1e-5;
+constexpr float kLargestLift = 1.5f;
+
+// A conductance g to the air says that the surface is 1/g cells above the cell's centre. The centre of the coarse cell is
+// half a fine cell lower, or higher if the surface runs through it.
+float liftedToAir(float g, bool inside) {
+  return inside ? 2.0f * g / (1.0f - 0.5f * std::min(g, kLargestLift)) : 2.0f * g / (1.0f + 0.5f * g);
+}
 
 }  // namespace
 
@@ -54,6 +61,8 @@ void PressureMultigrid::set(const Lattice& l, const std::vector<std::uint8_t>& h
   network.kind.swap(kind);
   fillHalo(l, network.kind);
   network.conductance = std::move(conductance);
+  network.beyond.resize(l.size);
+  for (std::size_t c = 0; c < l.size; ++c) network.beyond[c] = network.kind[c] == kAir;
   levels_[0].lattice = l;
   finish(network, levels_[0]);
   for (std::size_t index = 1; index < count; ++index) {
@@ -74,22 +83,44 @@ void PressureMultigrid::coarsen(const Lattice& from, const Network& fine, const 
     restrictFaces(from, a, fine.conductance[a], l, coarse.conductance[a]);
     fillHalo(l, coarse.conductance[a]);
   }
-  // Sum over eight children, with the same factor as a sum over four faces.
-  restrictCells(from, fine.to_air, l, coarse.to_air);
-  for (float& value : coarse.to_air) value *= 2.0f;
+  coarse.to_air.assign(l.size, 0.0f);
   coarse.kind.assign(l.size, kOutside);
+#pragma omp parallel for schedule(static) if (from.size >= kSizeWorthSharing)
   for (int k = 0; k < l.n[2]; ++k) {
     for (int j = 0; j < l.n[1]; ++j) {
       for (int i = 0; i < l.n[0]; ++i) {
-        std::uint8_t& kind = coarse.kind[l.index(i, j, k)];
-        for (int child = 0; child < 8 && kind != kLiquid; ++child) {
+        bool liquid = false, air = false, beyond = false;
+        for (int child = 0; child < 8; ++child) {
           const auto cell = from.index(2 * i + (child & 1), 2 * j + ((child >> 1) & 1), 2 * k + (child >> 2));
-          if (fine.kind[cell] != kOutside) kind = fine.kind[cell];
+          liquid = liquid || fine.kind[cell] == kLiquid;
+          air = air || fine.kind[cell] == kAir;
+          beyond = beyond || fine.beyond[cell];
         }
+        const auto c = l.index(i, j, k);
+        coarse.kind[c] = liquid ? kLiquid : air ? kAir : kOutside;
+        if (!liquid) continue;
+        float sum = 0.0f;
+        for (int child = 0; child < 8; ++child) {
+          const auto cell = from.index(2 * i + (child & 1), 2 * j + ((child >> 1) & 1), 2 * k + (child >> 2));
+          sum += liftedToAir(fine.to_air[cell], beyond);
+        }
+        // Over eight children, with the same factor as over four faces.
+        coarse.to_air[c] = 0.25f * sum;
       }
     }
   }
   fillHalo(l, coarse.kind);
+  fillHalo(l, coarse.to_air);
+  coarse.beyond.assign(l.size, 0);
+  forEachRow(l, [&](std::ptrdiff_t row, int, int) {
+    for (auto c = row; c < row + l.n[0]; ++c) {
+      if (coarse.kind[c] == kLiquid) continue;
+      coarse.beyond[c] = coarse.kind[c] == kAir;
+      for (const auto s : l.stride) {
+        for (const auto other : {c - s, c + s}) coarse.beyond[c] |= coarse.to_air[other] > 0.0f;
+      }
+    }
+  });
 }
 
 void PressureMultigrid::finish(const Network& network, Level& level) const {

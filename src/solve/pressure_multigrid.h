@@ -4,7 +4,8 @@
 //
 // L is a network: conductance open^2/mass on every face between two cells with pressure, and towards the air, where the
 // pressure is zero. A coarse face takes the mean of the four fine ones that it consists of (aggregation, Braess 1995,
-// with the factor that makes it consistent), so cut cells, thin gaps and the free surface coarsen without geometry.
+// with the factor that makes it consistent), so cut cells, thin gaps and the free surface coarsen without geometry; the
+// conductance to the air follows the surface's distance to the centre of the coarse cell.
 
 #include <Eigen/Dense>
 #include <vector>
@@ -50,6 +51,7 @@ class PressureMultigrid {
     FaceField<float> conductance;  // between cells with pressure
     std::vector<float> to_air;     // per cell, sum over its faces
     std::vector<std::uint8_t> kind;
+    std::vector<std::uint8_t> beyond;  // cells across the surface: air, also where coarse cells have lost sight of it
   };
 
   void coarsen(const Lattice& from, const Network& fine, const Lattice& l, Network& coarse) const;
