@@ -9,6 +9,9 @@ namespace {
 
 // A cycle in single precision does not reduce the true residual by more than this.
 constexpr double kLeastReduction = 3e-6;
+// Below kFloor of where a cycle began, one that has gained next to nothing in kPatience iterations has met its precision.
+constexpr double kFloor = 1e-4;
+constexpr int kPatience = 4;
 // The estimate of a cycle may be a little off: aim lower than the goal.
 constexpr double kMargin = 0.9;
 constexpr std::ptrdiff_t kChunk = 512;  // terms of a sum in single precision
@@ -89,6 +92,7 @@ Eigen::VectorXd Fgmres::cycle(const KrylovMaps& maps, double norm, double goal, 
     return vectors[index];
   };
   scaleInto(work_, 1.0 / norm, room(basis_, 0));
+  std::vector<double> estimates(kPatience, 1.0);
   int used = 0;
   bool stop = false;
   while (used < most && !stop) {
@@ -109,7 +113,9 @@ Eigen::VectorXd Fgmres::cycle(const KrylovMaps& maps, double norm, double goal, 
     rhs.applyOnTheLeft(j, j + 1, rotations[j].adjoint());
     ++used;
     const double estimate = std::abs(rhs[j + 1]);
-    stop = estimate <= goal || !(length > 0.0) || !std::isfinite(estimate);
+    estimates.push_back(estimate);
+    const bool stuck = estimate < kFloor && estimate > 0.95 * estimates[estimates.size() - 1 - kPatience];
+    stop = estimate <= goal || stuck || !(length > 0.0) || !std::isfinite(estimate);
     if (length > 0.0) scaleInto(w, 1.0 / length, w);
   }
   return norm * hessenberg.topLeftCorner(used, used).triangularView<Eigen::Upper>().solve(rhs.head(used));
