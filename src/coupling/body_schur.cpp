@@ -13,7 +13,7 @@ Eigen::MatrixXd BodySchur::resistance(const BodyColumns<float>& columns, LiquidP
     motion[column] = -1.0f;
     columns.addMotion(motion.data(), push.data());
     motion[column] = 0.0f;
-    preconditioner.apply(push.data(), answer.data());
+    preconditioner.apply(push.data(), 1.0f, answer.data());
     // The liquid's answer and the motion itself act on the bodies together.
     R.col(column) += columns.forces(answer.data());
   }

@@ -64,7 +64,7 @@ void LiquidPreconditioner::set(const StepProblem& problem, const FaceBlocks<floa
   });
 }
 
-void LiquidPreconditioner::apply(const float* r, float* x) {
+void LiquidPreconditioner::apply(const float* r, float flux_scale, float* x) {
   const Lattice& l = problem_->grid.lattice;
   const auto size = static_cast<std::ptrdiff_t>(l.size);
   const Faces<const float> b{r, r + size, r + 2 * size};
@@ -77,7 +77,7 @@ void LiquidPreconditioner::apply(const float* r, float* x) {
     chebyshevStart(*faces_, b, 1.0f, out, out);
     for (float* field : out) fillHalo(l, field);
   }
-  applyDivergence(l, *cells_, u, -1.0f, r + 3 * size, g_.data());
+  applyDivergence(l, *cells_, u, -flux_scale, r + 3 * size, g_.data());
   std::vector<float> constants;
   for (const PressureRegion& region : problem_->regions) {
     if (region.sealed) constants.push_back(removeMean(region.cells, g_.data()));

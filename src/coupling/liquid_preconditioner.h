@@ -27,8 +27,9 @@ class LiquidPreconditioner {
   void set(const StepProblem& problem, const FaceBlocks<float>& faces, const CellBlocks<float>& cells,
            FaceField<float>&& transfer, FaceField<float>&& conductance);
 
-  // x ~ the solution for right side r: U by components, then p^, lattice.size each. Halos of x are filled, those of r not read.
-  void apply(const float* r, float* x);
+  // x ~ the solution for right side r, its flux times flux_scale: U by components, then p^, lattice.size each. Halos of x
+  // are filled, those of r not read.
+  void apply(const float* r, float flux_scale, float* x);
 
   std::size_t bytes() const { return velocity_.bytes() + pressure_.bytes() + 2 * g_.size() * sizeof(float); }
 

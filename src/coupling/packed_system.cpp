@@ -23,6 +23,7 @@ void PackedSystem::set(StepProblem& problem) {
   buildCellBlocks(p.coefficients, cells_);
   faces_single_ = faces_.converted<float>();
   cells_single_ = cells_.converted<float>();
+  flux_weight_ = std::max(1.0, 2.0 * p.viscous_number);
   preconditioner_.set(p, faces_single_, cells_single_, std::move(transfer), std::move(conductance));
   scale_.resize(bodySize());
   for (std::size_t i = 0; i < p.free.size(); ++i) scale_.segment<6>(6 * i) = p.twist_scale[i];
@@ -70,7 +71,8 @@ void PackedSystem::pack(const StepVector& v, bool forces, std::vector<double>& x
   const std::size_t n = lattice().size;
   x.resize(size());
   for (int a = 0; a < 3; ++a) std::copy_n(v.velocity[a].begin(), n, x.begin() + a * n);
-  std::copy_n(v.pressure.begin(), n, x.begin() + 3 * n);
+  const double weight = forces ? flux_weight_ : 1.0;
+  for (std::size_t i = 0; i < n; ++i) x[3 * n + i] = weight * v.pressure[i];
   for (int field = 0; field < 4; ++field) clearHalo(lattice(), x.data() + field * n);
   const Eigen::VectorXd b = gatherBodies(*problem_, v.bodies);
   Eigen::Map<Eigen::VectorXd>(x.data() + liquidSize(), bodySize()) =
@@ -132,8 +134,14 @@ void PackedSystem::apply(const FaceBlocks<Real>& faces, const CellBlocks<Real>& 
                 Faces<Real>{to, to + size, to + 2 * size});
   applyDivergence(l, cells, U, Real(0), static_cast<const Real*>(nullptr), to + 3 * size);
   const Eigen::Index n = bodySize(), k = border_.count();
+  if (n > 0) columns.addMotion(from + liquid, to);
+  if (flux_weight_ != 1.0) {
+    const Real weight = static_cast<Real>(flux_weight_);
+    Real* flux = to + 3 * size;
+#pragma omp parallel for simd schedule(static)
+    for (std::size_t i = 0; i < size; ++i) flux[i] *= weight;
+  }
   if (n == 0) return;
-  columns.addMotion(from + liquid, to);
   const Eigen::VectorXd v = Eigen::Map<const Vector>(from + liquid, n).template cast<double>();
   Eigen::VectorXd force = bodies_ * v + columns.forces(from);
   if (k > 0) {
@@ -146,7 +154,7 @@ void PackedSystem::apply(const FaceBlocks<Real>& faces, const CellBlocks<Real>& 
 }
 
 void PackedSystem::precondition(const std::vector<float>& from, std::vector<float>& to) {
-  preconditioner_.apply(from.data(), to.data());
+  preconditioner_.apply(from.data(), 1.0f / static_cast<float>(flux_weight_), to.data());
   const Eigen::Index n = bodySize() + border_.count();
   if (n == 0) return;
   Eigen::VectorXd r = Eigen::Map<const Eigen::VectorXf>(from.data() + liquidSize(), n).cast<double>();

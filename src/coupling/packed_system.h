@@ -3,6 +3,9 @@
 // twists of the free bodies times their scale, the impulses of the contacts in the border - and flexible GMRES with its
 // preconditioner: the liquid's (liquid_preconditioner.h), then an approximate Schur complement S of the bodies, their inertia
 // and their resistance to motion in this liquid, bordered by the contacts. S ages slowly and is kept while it serves.
+//
+// The rows of the divergence are multiplied by 2 N where that is more than one: so much of a stress does a divergence make, and
+// a residual that weighs it less lets velocities pass whose strain rates are wrong.
 
 #include <Eigen/Dense>
 #include <vector>
@@ -69,6 +72,7 @@ class PackedSystem {
   BodyColumns<float> columns_single_;
   LiquidPreconditioner preconditioner_;
   Fgmres krylov_;
+  double flux_weight_ = 1.0;
   Eigen::VectorXd scale_;       // unknown = scale * twist
   Eigen::MatrixXd bodies_;      // A_vv with inertia
   Eigen::MatrixXd resistance_;  // of the free bodies, physical units
