@@ -1,5 +1,6 @@
 #pragma once
-// What the viscous samples of a grid are made of: the kinds of all faces, found once for each, and the segments between them.
+// What the viscous samples of a grid are made of: the kinds of all faces, found once for each, and the segments between
+// them.
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,6 @@
 #include "fluid/advection.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "fluid/interpolation.h"
 #include "fluid/row_advection.h"
@@ -195,8 +194,12 @@ void advectVelocity(const MacGrid& grid, const FaceField<double>& velocity,
       }
       advectRow(
           l, j, k, l.faceEnd(0), [&](int i) { return mask[i] != 0 && !(a == 0 && isWall(i)); },
-          [&](int i) { return advectFace(l, velocity, a, {i, j, k}, scale); },
-          [&](int i, Four& four) { return advectFour(l, velocity, a, {i, j, k}, scale, four); },
+          [&](int i) {
+            return advectFace(l, velocity, a, {i, j, k}, scale);
+          },
+          [&](int i, Four& four) {
+            return advectFour(l, velocity, a, {i, j, k}, scale, four);
+          },
           moved[a].data() + row);
       for (const int i : {0, l.n[0]}) {
         if (a == 0 && isWall(i)) moved[a][row + i] = mask[i] ? velocity[a][row + i] : 0.0;
@@ -232,16 +235,20 @@ void advectAccelerated(const MacGrid& grid, const FaceField<double>& velocity, c
 }
 
 void advectCells(const MacGrid& grid, const FaceField<double>& velocity, const std::vector<double>& field, double dt,
-                 std::vector<double>& moved, double band) {
+                 std::vector<double>& moved) {
   const Lattice& l = grid.lattice;
   const double scale = dt / grid.h;
   moved = field;
   forEachRowInTurn(l.n[1], l.n[2], [&](int j, int k) {
     const auto row = l.index(0, j, k);
     advectRow(
-        l, j, k, l.n[0], [&](int i) { return std::abs(field[row + i]) <= band; },
-        [&](int i) { return advectCell(l, velocity, field, {i, j, k}, scale); },
-        [&](int i, Four& four) { return advectFourCells(l, velocity, field, {i, j, k}, scale, four); },
+        l, j, k, l.n[0], [](int) { return true; },
+        [&](int i) {
+          return advectCell(l, velocity, field, {i, j, k}, scale);
+        },
+        [&](int i, Four& four) {
+          return advectFourCells(l, velocity, field, {i, j, k}, scale, four);
+        },
         moved.data() + row);
   });
 }

@@ -1,5 +1,5 @@
-// 9 + 51 + 64 loads of 32 bytes, from cache but for about one per field, and some 350 operations for four faces (twice that
-// where their feet lie in different octants): bound by arithmetic.
+// 9 + 51 + 64 loads of 32 bytes, from cache but for about one per field, and some 350 operations for four faces (twice
+// that where their feet lie in different octants): bound by arithmetic.
 #include "fluid/row_advection.h"
 
 #include <limits>
@@ -31,9 +31,7 @@ inline LinearWeights fromNode(Four x) {
   const Four up = most(x, zero), down = most(-x, zero);
   return {-1, 3, {down, all(1.0) - up - down, up}};
 }
-inline LinearWeights fromHalfWay(int first, Four x) {
-  return {first, 2, {all(0.5) - x, all(0.5) + x, all(0.0)}};
-}
+inline LinearWeights fromHalfWay(int first, Four x) { return {first, 2, {all(0.5) - x, all(0.5) + x, all(0.0)}}; }
 
 template <int count_x, int count_y, int count_z>
 inline Four interpolate(const double* u, const Lattice& l, const LinearWeights& x, const LinearWeights& y,
@@ -71,8 +69,8 @@ inline Four component(const double* u, const Lattice& l, const Four x[3]) {
   return interpolate<count(0), count(1), count(2)>(u, l, w[0], w[1], w[2]);
 }
 
-// Cubic at the foot, displaced by x; up: to the high side of an axis. With n = 4 all four are on the same side of each axis;
-// with n = 5 each has its own, and a node that is not in its stencil counts with weight zero and as no extremum.
+// Cubic at the foot, displaced by x; up: to the high side of an axis. With n = 4 all four are on the same side of each
+// axis; with n = 5 each has its own, and a node that is not in its stencil counts with weight zero and as no extremum.
 template <int n, bool limited>
 Four cubic(const double* u, const Lattice& l, const Four x[3], const Mask up[3]) {
   const Four zero = all(0.0), infinite = all(std::numeric_limits<double>::infinity());
@@ -166,9 +164,12 @@ bool advect(const Lattice& l, const FaceField<double>& velocity, const double* f
 bool advectFour(const Lattice& l, const FaceField<double>& velocity, int axis, const std::array<int, 3>& first,
                 double scale, Four& moved) {
   switch (axis) {
-    case 0: return advect<0>(l, velocity, velocity[0].data(), first, scale, moved);
-    case 1: return advect<1>(l, velocity, velocity[1].data(), first, scale, moved);
-    default: return advect<2>(l, velocity, velocity[2].data(), first, scale, moved);
+    case 0:
+      return advect<0>(l, velocity, velocity[0].data(), first, scale, moved);
+    case 1:
+      return advect<1>(l, velocity, velocity[1].data(), first, scale, moved);
+    default:
+      return advect<2>(l, velocity, velocity[2].data(), first, scale, moved);
   }
 }
 

@@ -14,8 +14,9 @@ namespace monolith {
 // Four faces next to each other along x; in the field they lie at any address.
 using Four = double __attribute__((vector_size(32)));
 
-// Of the faces `first` = (i, j, k) to (i + 3, j, k) of `axis`, every index below n of its axis: the velocity at their feet.
-// False, and `moved` untouched, unless all of them move by less than a cell and no stencil leaves the field. scale: dt/h.
+// Of the faces `first` = (i, j, k) to (i + 3, j, k) of `axis`, every index below n of its axis: the velocity at their
+// feet. False, and `moved` untouched, unless all of them move by less than a cell and no stencil leaves the field.
+// scale: dt/h.
 bool advectFour(const Lattice& lattice, const FaceField<double>& velocity, int axis, const std::array<int, 3>& first,
                 double scale, Four& moved);
 
