@@ -66,13 +66,17 @@ void forEachRowInTurn(int end_j, int end_k, RowFunction&& f) {
   }
 }
 
-// One row, four entries at a time where their stencils cannot leave the field: those that are wanted.
-template <class Wanted, class One, class FourFunction>
-void advectRow(const Lattice& l, int j, int k, int end, Wanted&& wanted, One&& one, FourFunction&& four, double* out) {
+// One row of `count` fields, four entries at a time where their stencils cannot leave the field: those that are wanted.
+// one(i) -> its values; four(i, fours) -> whether it could.
+template <std::size_t count, class Wanted, class One, class FourFunction>
+void advectRow(const Lattice& l, int j, int k, int end, Wanted&& wanted, One&& one, FourFunction&& four,
+               const std::array<double*, count>& out) {
   constexpr int kFour = 4;
   const auto oneByOne = [&](int begin, int stop) {
     for (int i = begin; i < stop; ++i) {
-      if (wanted(i)) out[i] = one(i);
+      if (!wanted(i)) continue;
+      const std::array<double, count> values = one(i);
+      for (std::size_t n = 0; n < count; ++n) out[n][i] = values[n];
     }
   };
   if (j >= l.n[1] || k >= l.n[2] || l.n[0] < kFour) {
@@ -82,16 +86,57 @@ void advectRow(const Lattice& l, int j, int k, int end, Wanted&& wanted, One&& o
   for (int i = 0; i < l.n[0]; i += kFour) {
     const int first = std::min(i, l.n[0] - kFour);  // the last four overlap those before
     if (!(wanted(first) || wanted(first + 1) || wanted(first + 2) || wanted(first + 3))) continue;
-    Four moved;
-    if (!four(first, moved)) {
+    std::array<Four, count> values;
+    if (!four(first, values)) {
       oneByOne(i, std::min(i + kFour, l.n[0]));
       continue;
     }
     for (int q = i - first; q < kFour; ++q) {
-      if (wanted(first + q)) out[first + q] = moved[q];
+      if (!wanted(first + q)) continue;
+      for (std::size_t n = 0; n < count; ++n) out[n][first + q] = values[n][q];
     }
   }
   oneByOne(l.n[0], end);
+}
+
+// Values of `count` fields at the known faces of an axis, as advectRow(); faces in a wall keep those of `from`.
+template <std::size_t count, class One, class FourFunction>
+void advectFaces(const Lattice& l, int axis, const std::vector<std::uint8_t>& known, One&& one, FourFunction&& four,
+                 const std::array<const std::vector<double>*, count>& from,
+                 const std::array<std::vector<double>*, count>& to) {
+  for (auto* field : to) field->assign(l.size, 0.0);
+  forEachRowInTurn(l.faceEnd(1), l.faceEnd(2), [&](int j, int k) {
+    const auto row = l.index(0, j, k);
+    const std::uint8_t* mask = known.data() + row;
+    const int at[3] = {0, j, k};
+    const auto isWall = [&](int i) {
+      const int along = axis == 0 ? i : at[axis];
+      return !l.periodic[axis] && (along == 0 || along == l.n[axis]);
+    };
+    const auto keep = [&](int i) {
+      if (!mask[i]) return;
+      for (std::size_t n = 0; n < count; ++n) (*to[n])[row + i] = (*from[n])[row + i];
+    };
+    if (axis != 0 && isWall(0)) {
+      for (int i = 0; i < l.faceEnd(0); ++i) keep(i);
+      return;
+    }
+    std::array<double*, count> out;
+    for (std::size_t n = 0; n < count; ++n) out[n] = to[n]->data() + row;
+    advectRow<count>(
+        l, j, k, l.faceEnd(0), [&](int i) { return mask[i] != 0 && !(axis == 0 && isWall(i)); },
+        [&](int i) {
+          return one(std::array<int, 3>{i, j, k});
+        },
+        [&](int i, std::array<Four, count>& values) {
+          return four(std::array<int, 3>{i, j, k}, values);
+        },
+        out);
+    if (axis != 0) return;
+    for (const int i : {0, l.n[0]}) {
+      if (isWall(i)) keep(i);
+    }
+  });
 }
 
 }  // namespace
@@ -178,33 +223,13 @@ void advectVelocity(const MacGrid& grid, const FaceField<double>& velocity,
   const Lattice& l = grid.lattice;
   const double scale = dt / grid.h;
   for (int a = 0; a < 3; ++a) {
-    moved[a].assign(l.size, 0.0);
-    forEachRowInTurn(l.faceEnd(1), l.faceEnd(2), [&](int j, int k) {
-      const auto row = l.index(0, j, k);
-      const std::uint8_t* mask = known[a].data() + row;
-      const int at[3] = {0, j, k};
-      // Faces in a wall stay what they are.
-      const auto isWall = [&](int i) {
-        const int along = a == 0 ? i : at[a];
-        return !l.periodic[a] && (along == 0 || along == l.n[a]);
-      };
-      if (a != 0 && isWall(0)) {
-        for (int i = 0; i < l.faceEnd(0); ++i) moved[a][row + i] = mask[i] ? velocity[a][row + i] : 0.0;
-        return;
-      }
-      advectRow(
-          l, j, k, l.faceEnd(0), [&](int i) { return mask[i] != 0 && !(a == 0 && isWall(i)); },
-          [&](int i) {
-            return advectFace(l, velocity, a, {i, j, k}, scale);
-          },
-          [&](int i, Four& four) {
-            return advectFour(l, velocity, a, {i, j, k}, scale, four);
-          },
-          moved[a].data() + row);
-      for (const int i : {0, l.n[0]}) {
-        if (a == 0 && isWall(i)) moved[a][row + i] = mask[i] ? velocity[a][row + i] : 0.0;
-      }
-    });
+    advectFaces<1>(
+        l, a, known[a],
+        [&](const std::array<int, 3>& face) { return std::array<double, 1>{advectFace(l, velocity, a, face, scale)}; },
+        [&](const std::array<int, 3>& first, std::array<Four, 1>& values) {
+          return advectFour(l, velocity, a, first, scale, values[0]);
+        },
+        {&velocity[a]}, {&moved[a]});
   }
 }
 
@@ -212,25 +237,27 @@ void advectAccelerated(const MacGrid& grid, const FaceField<double>& velocity, c
                        const std::array<std::vector<std::uint8_t>, 3>& known, double dt, FaceField<double>& moved,
                        FaceField<double>& gained) {
   const Lattice& l = grid.lattice;
-  FaceField<double> mean = velocity;
+  FaceField<double> mean;
   for (int a = 0; a < 3; ++a) {
-    for (std::size_t i = 0; i < l.size; ++i) mean[a][i] += 0.5 * dt * acceleration[a][i];
+    mean[a].resize(l.size);
+#pragma omp parallel for simd schedule(static)
+    for (std::size_t i = 0; i < l.size; ++i) mean[a][i] = velocity[a][i] + 0.5 * dt * acceleration[a][i];
   }
   const double scale = dt / grid.h;
   for (int a = 0; a < 3; ++a) {
-    moved[a].assign(l.size, 0.0);
-    gained[a].assign(l.size, 0.0);
     const Eigen::Vector3d offset = nodeOffset(a);
-    forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
-      for (int i = 0; i < l.faceEnd(0); ++i) {
-        if (!known[a][row + i]) continue;
-        const Eigen::Vector3d x = Eigen::Vector3d(i, j, k) + offset;
-        const Eigen::Vector3d near = x - scale * velocityAtFace(l, mean, a, row + i);
-        const Eigen::Vector3d node = x - scale * velocityAt(l, mean, near) - offset;
-        moved[a][row + i] = sampleCubic(l, velocity[a], node, true);
-        gained[a][row + i] = sampleLinear(l, acceleration[a], node);
-      }
-    });
+    advectFaces<2>(
+        l, a, known[a],
+        [&](const std::array<int, 3>& face) {
+          const Eigen::Vector3d x = Eigen::Vector3d(face[0], face[1], face[2]) + offset;
+          const Eigen::Vector3d near = x - scale * velocityAtFace(l, mean, a, l.index(face[0], face[1], face[2]));
+          const Eigen::Vector3d foot = x - scale * velocityAt(l, mean, near) - offset;
+          return std::array<double, 2>{sampleCubic(l, velocity[a], foot, true), sampleLinear(l, acceleration[a], foot)};
+        },
+        [&](const std::array<int, 3>& first, std::array<Four, 2>& values) {
+          return advectFourAccelerated(l, mean, velocity[a], acceleration[a], a, first, scale, values[0], values[1]);
+        },
+        {&velocity[a], &acceleration[a]}, {&moved[a], &gained[a]});
   }
 }
 
@@ -241,15 +268,15 @@ void advectCells(const MacGrid& grid, const FaceField<double>& velocity, const s
   moved = field;
   forEachRowInTurn(l.n[1], l.n[2], [&](int j, int k) {
     const auto row = l.index(0, j, k);
-    advectRow(
+    advectRow<1>(
         l, j, k, l.n[0], [](int) { return true; },
         [&](int i) {
-          return advectCell(l, velocity, field, {i, j, k}, scale);
+          return std::array<double, 1>{advectCell(l, velocity, field, {i, j, k}, scale)};
         },
-        [&](int i, Four& four) {
-          return advectFourCells(l, velocity, field, {i, j, k}, scale, four);
+        [&](int i, std::array<Four, 1>& values) {
+          return advectFourCells(l, velocity, field, {i, j, k}, scale, values[0]);
         },
-        moved.data() + row);
+        {moved.data() + row});
   });
 }
 

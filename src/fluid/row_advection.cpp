@@ -121,9 +121,17 @@ Four cubic(const double* u, const Lattice& l, const Four x[3], const Mask up[3])
   return least(most(sum, lowest - slack), highest + slack);
 }
 
+// Feet of the trajectories of four nodes of axis a (-1: cells) next to each other.
+struct Feet {
+  Four x[3];      // displacement, at most a cell
+  Mask up[3];     // to the high side
+  bool together;  // all in the same octant
+};
+
+// With the velocity at `part` of the way back. False as advectFour().
 template <int a>
-bool advect(const Lattice& l, const FaceField<double>& velocity, const double* field, const std::array<int, 3>& first,
-            double scale, Four& moved) {
+bool findFeet(const Lattice& l, const FaceField<double>& velocity, const std::array<int, 3>& first, double part,
+              double scale, Feet& feet) {
   const auto f = l.index(first[0], first[1], first[2]);
   const double* u[3] = {velocity[0].data() + f, velocity[1].data() + f, velocity[2].data() + f};
   Four x[3];
@@ -137,25 +145,48 @@ bool advect(const Lattice& l, const FaceField<double>& velocity, const double* f
       const auto sa = l.stride[a < 0 ? 0 : a];
       v = 0.25 * (v + at(u[b] + sb) + at(u[b] - sa) + at(u[b] + sb - sa));
     }
-    x[b] = -0.5 * scale * v;
+    x[b] = -part * scale * v;
     far |= (x[b] > 0.5) | (x[b] < -0.5);
   }
   if (any(far)) return false;
-  const Four foot[3] = {-scale * component<a, 0>(u[0], l, x), -scale * component<a, 1>(u[1], l, x),
-                        -scale * component<a, 2>(u[2], l, x)};
-  Mask up[3];
-  bool together = true;
+  feet.x[0] = -scale * component<a, 0>(u[0], l, x);
+  feet.x[1] = -scale * component<a, 1>(u[1], l, x);
+  feet.x[2] = -scale * component<a, 2>(u[2], l, x);
+  feet.together = true;
   for (int d = 0; d < 3; ++d) {
-    up[d] = foot[d] >= 0.0;
-    together = together && (every(up[d]) || none(up[d]));
+    feet.up[d] = feet.x[d] >= 0.0;
+    feet.together = feet.together && (every(feet.up[d]) || none(feet.up[d]));
     // There is one node below the first.
-    if (first[d] == 0 && !every(up[d])) return false;
-    far |= (foot[d] > 1.0) | (foot[d] < -1.0);
+    if (first[d] == 0 && !every(feet.up[d])) return false;
+    far |= (feet.x[d] > 1.0) | (feet.x[d] < -1.0);
   }
   if (any(far)) return false;
   const bool lowest = first[0] == 0 || first[1] == 0 || first[2] == 0;
-  if (lowest && !together) return false;
-  moved = together ? cubic<4, (a >= 0)>(field + f, l, foot, up) : cubic<5, (a >= 0)>(field + f, l, foot, up);
+  return !lowest || feet.together;
+}
+
+template <bool limited>
+Four cubicAt(const double* field, const Lattice& l, const Feet& feet) {
+  return feet.together ? cubic<4, limited>(field, l, feet.x, feet.up) : cubic<5, limited>(field, l, feet.x, feet.up);
+}
+
+template <int a>
+bool advect(const Lattice& l, const FaceField<double>& velocity, const double* field, const std::array<int, 3>& first,
+            double scale, Four& moved) {
+  Feet feet;
+  if (!findFeet<a>(l, velocity, first, 0.5, scale, feet)) return false;
+  moved = cubicAt<(a >= 0)>(field + l.index(first[0], first[1], first[2]), l, feet);
+  return true;
+}
+
+template <int a>
+bool advectAccelerated(const Lattice& l, const FaceField<double>& mean, const double* u, const double* acceleration,
+                       const std::array<int, 3>& first, double scale, Four& moved, Four& gained) {
+  Feet feet;
+  if (!findFeet<a>(l, mean, first, 1.0, scale, feet)) return false;
+  const auto f = l.index(first[0], first[1], first[2]);
+  moved = cubicAt<true>(u + f, l, feet);
+  gained = interpolate<3, 3, 3>(acceleration + f, l, fromNode(feet.x[0]), fromNode(feet.x[1]), fromNode(feet.x[2]));
   return true;
 }
 
@@ -170,6 +201,19 @@ bool advectFour(const Lattice& l, const FaceField<double>& velocity, int axis, c
       return advect<1>(l, velocity, velocity[1].data(), first, scale, moved);
     default:
       return advect<2>(l, velocity, velocity[2].data(), first, scale, moved);
+  }
+}
+
+bool advectFourAccelerated(const Lattice& l, const FaceField<double>& mean, const std::vector<double>& u,
+                           const std::vector<double>& acceleration, int axis, const std::array<int, 3>& first,
+                           double scale, Four& moved, Four& gained) {
+  switch (axis) {
+    case 0:
+      return advectAccelerated<0>(l, mean, u.data(), acceleration.data(), first, scale, moved, gained);
+    case 1:
+      return advectAccelerated<1>(l, mean, u.data(), acceleration.data(), first, scale, moved, gained);
+    default:
+      return advectAccelerated<2>(l, mean, u.data(), acceleration.data(), first, scale, moved, gained);
   }
 }
 

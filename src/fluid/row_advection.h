@@ -20,6 +20,12 @@ using Four = double __attribute__((vector_size(32)));
 bool advectFour(const Lattice& lattice, const FaceField<double>& velocity, int axis, const std::array<int, 3>& first,
                 double scale, Four& moved);
 
+// The same of advectAccelerated() of advection.h: feet by the velocity `mean` of the half-way time; velocity u (limited
+// tricubic) and acceleration (trilinear) there. Moves of up to half a cell.
+bool advectFourAccelerated(const Lattice& lattice, const FaceField<double>& mean, const std::vector<double>& u,
+                           const std::vector<double>& acceleration, int axis, const std::array<int, 3>& first,
+                           double scale, Four& moved, Four& gained);
+
 // Likewise a cell-centred field at cells.
 bool advectFourCells(const Lattice& lattice, const FaceField<double>& velocity, const std::vector<double>& field,
                      const std::array<int, 3>& first, double scale, Four& moved);
