@@ -16,8 +16,8 @@ constexpr std::size_t kDirectCells = 216;
 constexpr double kShift = 1e-5;
 constexpr float kLargestLift = 1.5f;
 
-// A conductance g to the air says that the surface is 1/g cells above the cell's centre. The centre of the coarse cell is
-// half a fine cell lower, or higher if the surface runs through it.
+// A conductance g to the air says that the surface is 1/g cells above the cell's centre. The centre of the coarse cell
+// is half a fine cell lower, or higher if the surface runs through it.
 float liftedToAir(float g, bool inside) {
   return inside ? 2.0f * g / (1.0f - 0.5f * std::min(g, kLargestLift)) : 2.0f * g / (1.0f + 0.5f * g);
 }
@@ -144,8 +144,8 @@ void PressureMultigrid::finish(const Network& network, Level& level) const {
   level.range.ratio = kRatio;
 }
 
-// Cells in solids and beyond the walls get the value next to them, so that interpolation sees no boundary there. Cells in
-// the air keep zero, their pressure.
+// Cells in solids and beyond the walls get the value next to them, so that interpolation sees no boundary there. Cells
+// in the air keep zero, their pressure.
 void PressureMultigrid::findExtension(const Network& network, Level& level) const {
   const Lattice& l = level.lattice;
   level.extension.clear();
@@ -233,7 +233,8 @@ void PressureMultigrid::residual(Level& level, float* r) const {
   });
 }
 
-// As chebyshevStep() in stokes_stencil.h. A step streams 16 bytes a cell for 27 flops: bound by the second cache or memory.
+// As chebyshevStep() in stokes_stencil.h. A step streams 16 bytes a cell for 27 flops: bound by the second cache or
+// memory.
 void PressureMultigrid::smooth(Level& level, int degree, bool from_zero) const {
   ChebyshevRecurrence recurrence(level.range);
   const float* b = level.right;
@@ -257,8 +258,8 @@ void PressureMultigrid::smooth(Level& level, int degree, bool from_zero) const {
         network(level.lattice, k, x + c, Lx);
 #pragma omp simd
         for (int i = 0; i < kLanes; ++i) {
-          next[c + i] = x[c + i] + keep * (x[c + i] - next[c + i]) +
-                        scale * k[kInverse * kLanes + i] * (b[c + i] - Lx[i]);
+          next[c + i] =
+              x[c + i] + keep * (x[c + i] - next[c + i]) + scale * k[kInverse * kLanes + i] * (b[c + i] - Lx[i]);
         }
       });
       level.x.swap(level.next);
