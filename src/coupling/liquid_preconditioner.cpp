@@ -74,7 +74,7 @@ void LiquidPreconditioner::apply(const float* r, float flux_scale, float* x) {
     u = velocity_.cycle(b);
   } else {
     // The diagonal is all there is.
-    divideByDiagonal(*faces_, b, out);
+    chebyshevStart(*faces_, b, 1.0f, out, out);
     for (float* field : out) fillHalo(l, field);
   }
   applyDivergence(l, *cells_, u, -flux_scale, r + 3 * size, g_.data());
@@ -87,8 +87,7 @@ void LiquidPreconditioner::apply(const float* r, float flux_scale, float* x) {
   for (const PressureRegion& region : problem_->regions) {
     if (!region.sealed) continue;
     removeMean(region.cells, phi);
-    // The constant of a pocket between free bodies is their doing alone; any positive scale lets the Krylov method find
-    // it.
+    // The constant of a pocket between free bodies is their doing alone; any positive scale lets the Krylov method find it.
     if (!region.null_mode) {
       for (const auto cell : region.cells) phi[cell] += constants[sealed];
     }

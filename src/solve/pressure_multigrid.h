@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "solve/chebyshev.h"
-#include "solve/staggered_operator.h"
 #include "solve/stencil_blocks.h"
+#include "solve/staggered_operator.h"
 
 namespace monolith {
 
@@ -41,7 +41,7 @@ class PressureMultigrid {
   struct Level {
     Lattice lattice;
     StencilBlocks<float, kCount> blocks;
-    std::vector<float> mask, x, next, b;
+    std::vector<float> mask, x, next, b, d;
     std::vector<Extension> extension;
     const float* right = nullptr;
     ChebyshevRange range;

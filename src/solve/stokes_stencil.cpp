@@ -15,8 +15,8 @@ struct Others {
 };
 constexpr Others kOthers[3] = {{{1, 2}, {0, 1}, {0, 0}}, {{0, 2}, {0, 2}, {1, 0}}, {{0, 1}, {1, 2}, {1, 1}}};
 
-// A U of the lanes from f on. Per face 21 flops over the pattern's 11 and the fields' 15 loads, all but three of which
-// hit the first cache: bound by its load ports.
+// A U of the lanes from f on. Per face 21 flops over the pattern's 11 and the fields' 15 loads, all but three of which hit
+// the first cache: bound by its load ports.
 template <class Real>
 inline void momentum(const Lattice& l, int a, std::ptrdiff_t f, const Real* k, const Faces<const Real>& U, Real* out) {
   const auto sa = l.stride[a];
@@ -29,9 +29,10 @@ inline void momentum(const Lattice& l, int a, std::ptrdiff_t f, const Real* k, c
     const Real at = u[i];
     const Real own = k[i] * at + k[S::kNormalLow * kLanes + i] * (at - u[i - sa]) +
                      k[S::kNormalHigh * kLanes + i] * (at - u[i + sa]);
-    const Real shear =
-        k[S::kShearLow * kLanes + i] * (at - u[i - sb]) + k[(S::kShearLow + 1) * kLanes + i] * (at - u[i - sc]) +
-        k[S::kShearHigh * kLanes + i] * (at - u[i + sb]) + k[(S::kShearHigh + 1) * kLanes + i] * (at - u[i + sc]);
+    const Real shear = k[S::kShearLow * kLanes + i] * (at - u[i - sb]) +
+                       k[(S::kShearLow + 1) * kLanes + i] * (at - u[i - sc]) +
+                       k[S::kShearHigh * kLanes + i] * (at - u[i + sb]) +
+                       k[(S::kShearHigh + 1) * kLanes + i] * (at - u[i + sc]);
     const Real cross = k[S::kCrossLow * kLanes + i] * (v[i] - v[i - sa]) -
                        k[S::kCrossHigh * kLanes + i] * (v[i + sb] - v[i + sb - sa]) +
                        k[(S::kCrossLow + 1) * kLanes + i] * (w[i] - w[i - sa]) -
@@ -199,45 +200,37 @@ void applyDivergence(const Lattice& l, const CellBlocks<Real>& blocks, const Fac
     for (int i = 0; i < kLanes; ++i) {
       const Real flux = k[3 * kLanes + i] * u[i + 1] - k[i] * u[i] + k[4 * kLanes + i] * v[i + sy] -
                         k[kLanes + i] * v[i] + k[5 * kLanes + i] * w[i + sz] - k[2 * kLanes + i] * w[i];
-      const Real any =
-          k[i] + k[kLanes + i] + k[2 * kLanes + i] + k[3 * kLanes + i] + k[4 * kLanes + i] + k[5 * kLanes + i];
+      const Real any = k[i] + k[kLanes + i] + k[2 * kLanes + i] + k[3 * kLanes + i] + k[4 * kLanes + i] + k[5 * kLanes + i];
       out[i] = any > Real(0) ? start[i] - flux : Real(0);
     }
   });
 }
 
-// Streams x, b and next (read and written): 48 bytes and 78 flops a cell. In cache bound by loads, beyond by memory.
+// Streams x, b, d (read and written) and next: 60 bytes and 75 flops a cell. In cache bound by loads, beyond by memory.
 void chebyshevStep(const Lattice& l, const FaceBlocks<float>& blocks, const Faces<const float>& x,
-                   const Faces<const float>& b, float keep, float scale, const Faces<float>& next) {
+                   const Faces<const float>& b, float keep, float scale, const Faces<float>& d,
+                   const Faces<float>& next) {
   blocks.forEach([&](int a, std::ptrdiff_t f, const float* k) {
     float Ax[kLanes];
     momentum(l, a, f, k, x, Ax);
-    const float *at = x[a] + f, *right = b[a] + f;
-    float* to = next[a] + f;
+    const float *from = x[a] + f, *right = b[a] + f;
+    float *step = d[a] + f, *to = next[a] + f;
 #pragma omp simd
     for (int i = 0; i < kLanes; ++i) {
-      to[i] = at[i] + keep * (at[i] - to[i]) + scale * k[S::kInverse * kLanes + i] * (right[i] - Ax[i]);
+      step[i] = keep * step[i] + scale * k[S::kInverse * kLanes + i] * (right[i] - Ax[i]);
+      to[i] = from[i] + step[i];
     }
   });
 }
 
 // 36 bytes a cell; bound by memory.
-void chebyshevStart(const FaceBlocks<float>& blocks, const Faces<const float>& b, float scale,
-                    const Faces<float>& before, const Faces<float>& x) {
+void chebyshevStart(const FaceBlocks<float>& blocks, const Faces<const float>& b, float scale, const Faces<float>& d,
+                    const Faces<float>& x) {
   blocks.forEach([&](int a, std::ptrdiff_t f, const float* k) {
 #pragma omp simd
     for (int i = 0; i < kLanes; ++i) {
-      x[a][f + i] = scale * k[S::kInverse * kLanes + i] * b[a][f + i];
-      before[a][f + i] = 0.0f;
+      x[a][f + i] = d[a][f + i] = scale * k[S::kInverse * kLanes + i] * b[a][f + i];
     }
-  });
-}
-
-// 24 bytes a cell; bound by memory.
-void divideByDiagonal(const FaceBlocks<float>& blocks, const Faces<const float>& b, const Faces<float>& x) {
-  blocks.forEach([&](int a, std::ptrdiff_t f, const float* k) {
-#pragma omp simd
-    for (int i = 0; i < kLanes; ++i) x[a][f + i] = k[S::kInverse * kLanes + i] * b[a][f + i];
   });
 }
 
@@ -264,19 +257,19 @@ void project(const Lattice& l, const FaceBlocks<float>& blocks, const Faces<cons
   });
 }
 
-#define MONOLITH_INSTANTIATE(Real, From)                                                                  \
-  template void buildFaceBlocks(const StaggeredCoefficients<From>&, FaceBlocks<Real>&, FaceField<float>*, \
-                                FaceField<float>*);                                                       \
+#define MONOLITH_INSTANTIATE(Real, From)                                                                          \
+  template void buildFaceBlocks(const StaggeredCoefficients<From>&, FaceBlocks<Real>&, FaceField<float>*,          \
+                                FaceField<float>*);                                                                \
   template void buildCellBlocks(const StaggeredCoefficients<From>&, CellBlocks<Real>&);
 MONOLITH_INSTANTIATE(double, double)
 MONOLITH_INSTANTIATE(float, double)
 MONOLITH_INSTANTIATE(float, float)
 #undef MONOLITH_INSTANTIATE
-#define MONOLITH_INSTANTIATE(Real)                                                                                    \
-  template void applyMomentum(const Lattice&, const FaceBlocks<Real>&, bool, const Faces<const Real>&, const Real*,   \
-                              const Faces<Real>&);                                                                    \
-  template void applyDivergence(const Lattice&, const CellBlocks<Real>&, const Faces<const Real>&, Real, const Real*, \
-                                Real*);
+#define MONOLITH_INSTANTIATE(Real)                                                                                \
+  template void applyMomentum(const Lattice&, const FaceBlocks<Real>&, bool, const Faces<const Real>&, const Real*, \
+                              const Faces<Real>&);                                                                 \
+  template void applyDivergence(const Lattice&, const CellBlocks<Real>&, const Faces<const Real>&, Real,           \
+                                const Real*, Real*);
 MONOLITH_INSTANTIATE(double)
 MONOLITH_INSTANTIATE(float)
 #undef MONOLITH_INSTANTIATE

@@ -1,9 +1,9 @@
 #pragma once
-// The operators of staggered_operator.h as compressed stencils (stencil_blocks.h), and the hot kernels of the fast
-// solve. staggered_operator.* is the plain form that tests hold them against.
+// The operators of staggered_operator.h as compressed stencils (stencil_blocks.h), and the hot kernels of the fast solve.
+// staggered_operator.* is the plain form that tests hold them against.
 //
-// Row of the viscous block at a face of axis a, with b, c the other two axes in order and differences taken first, so
-// that large viscous numbers cost no digits of smooth fields (v, w: components b, c):
+// Row of the viscous block at a face of axis a, with b, c the other two axes in order and differences taken first, so that
+// large viscous numbers cost no digits of smooth fields (v, w: components b, c):
 //
 //   (A U)[f] = tie u[f] + n- (u[f] - u[f-a]) + n+ (u[f] - u[f+a])
 //            + sum over (v, b), (w, c):  s- (u[f] - u[f-b]) + s+ (u[f] - u[f+b])
@@ -12,25 +12,22 @@
 #include <array>
 #include <vector>
 
-#include "solve/staggered_operator.h"
 #include "solve/stencil_blocks.h"
+#include "solve/staggered_operator.h"
 
 namespace monolith {
 
 // Places of the coefficients in a face's pattern.
 struct FaceStencil {
   enum : int {
-    kTie,  // mass + drag
-    kNormalLow,
-    kNormalHigh,
-    kShearLow,
-    kShearHigh = 5,  // of the pair with b; those with c follow each: kShearLow + 1, ...
-    kCrossLow = 7,
-    kCrossHigh = 9,
-    kInverse = 11,  // 1 over the smoothing diagonal
-    kTransfer,      // share of a correction that comes from the coarser level: 1 - tie to solids/diagonal
+    kTie,                            // mass + drag
+    kNormalLow, kNormalHigh,
+    kShearLow, kShearHigh = 5,       // of the pair with b; those with c follow each: kShearLow + 1, ...
+    kCrossLow = 7, kCrossHigh = 9,
+    kInverse = 11,                   // 1 over the smoothing diagonal
+    kTransfer,                       // share of a correction that comes from the coarser level: 1 - tie to solids/diagonal
     kOpen,
-    kImpulse,  // open over effective mass
+    kImpulse,                        // open over effective mass
     kCount
   };
 };
@@ -48,8 +45,7 @@ using CellBlocks = StencilBlocks<Real, CellStencil::kCount>;
 template <class Real>
 using Faces = std::array<Real*, 3>;
 
-// Compresses a level. transfer and conductance (open^2/effective mass) are those per face, as fields; either may be
-// null.
+// Compresses a level. transfer and conductance (open^2/effective mass) are those per face, as fields; either may be null.
 template <class Real, class From>
 void buildFaceBlocks(const StaggeredCoefficients<From>& c, FaceBlocks<Real>& out, FaceField<float>* transfer,
                      FaceField<float>* conductance);
@@ -67,15 +63,13 @@ template <class Real>
 void applyDivergence(const Lattice& l, const CellBlocks<Real>& blocks, const Faces<const Real>& U, Real factor,
                      const Real* g, Real* y);
 
-// Chebyshev on A x = b: next = x + keep (x - before) + scale D^-1 (b - A x); `before`, the iterate before x, is read
-// from `next` and overwritten.
+// Chebyshev on A x = b: d = keep d + scale D^-1 (b - A x), next = x + d.
 void chebyshevStep(const Lattice& l, const FaceBlocks<float>& blocks, const Faces<const float>& x,
-                   const Faces<const float>& b, float keep, float scale, const Faces<float>& next);
-// The first step from before = 0: x = scale D^-1 b.
-void chebyshevStart(const FaceBlocks<float>& blocks, const Faces<const float>& b, float scale,
-                    const Faces<float>& before, const Faces<float>& x);
-// x = D^-1 b
-void divideByDiagonal(const FaceBlocks<float>& blocks, const Faces<const float>& b, const Faces<float>& x);
+                   const Faces<const float>& b, float keep, float scale, const Faces<float>& d,
+                   const Faces<float>& next);
+// The first step from x = 0: d = x = scale D^-1 b.
+void chebyshevStart(const FaceBlocks<float>& blocks, const Faces<const float>& b, float scale, const Faces<float>& d,
+                    const Faces<float>& x);
 // r = transfer (b - A x)
 void transferredResidual(const Lattice& l, const FaceBlocks<float>& blocks, const Faces<const float>& x,
                          const Faces<const float>& b, const Faces<float>& r);
