@@ -74,7 +74,7 @@ void LiquidPreconditioner::apply(const float* r, float flux_scale, float* x) {
     u = velocity_.cycle(b);
   } else {
     // The diagonal is all there is.
-    divideByDiagonal(*faces_, b, out);
+    chebyshevStart(*faces_, b, 1.0f, out, out);
     for (float* field : out) fillHalo(l, field);
   }
   applyDivergence(l, *cells_, u, -flux_scale, r + 3 * size, g_.data());

@@ -41,7 +41,7 @@ class PressureMultigrid {
   struct Level {
     Lattice lattice;
     StencilBlocks<float, kCount> blocks;
-    std::vector<float> mask, x, next, b;
+    std::vector<float> mask, x, next, b, d;
     std::vector<Extension> extension;
     const float* right = nullptr;
     ChebyshevRange range;

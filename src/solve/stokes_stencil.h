@@ -63,15 +63,13 @@ template <class Real>
 void applyDivergence(const Lattice& l, const CellBlocks<Real>& blocks, const Faces<const Real>& U, Real factor,
                      const Real* g, Real* y);
 
-// Chebyshev on A x = b: next = x + keep (x - before) + scale D^-1 (b - A x); `before`, the iterate before x, is read from
-// `next` and overwritten.
+// Chebyshev on A x = b: d = keep d + scale D^-1 (b - A x), next = x + d.
 void chebyshevStep(const Lattice& l, const FaceBlocks<float>& blocks, const Faces<const float>& x,
-                   const Faces<const float>& b, float keep, float scale, const Faces<float>& next);
-// The first step from before = 0: x = scale D^-1 b.
-void chebyshevStart(const FaceBlocks<float>& blocks, const Faces<const float>& b, float scale,
-                    const Faces<float>& before, const Faces<float>& x);
-// x = D^-1 b
-void divideByDiagonal(const FaceBlocks<float>& blocks, const Faces<const float>& b, const Faces<float>& x);
+                   const Faces<const float>& b, float keep, float scale, const Faces<float>& d,
+                   const Faces<float>& next);
+// The first step from x = 0: d = x = scale D^-1 b.
+void chebyshevStart(const FaceBlocks<float>& blocks, const Faces<const float>& b, float scale, const Faces<float>& d,
+                    const Faces<float>& x);
 // r = transfer (b - A x)
 void transferredResidual(const Lattice& l, const FaceBlocks<float>& blocks, const Faces<const float>& x,
                          const Faces<const float>& b, const Faces<float>& r);

@@ -30,7 +30,7 @@ void VelocityMultigrid::set(const Lattice& lattice, const FaceBlocks<float>& fin
       level.blocks = &level.own;
     }
     // Zero where nothing is written: other faces than last time may have an unknown now.
-    for (auto* fields : {&level.x, &level.next}) {
+    for (auto* fields : {&level.x, &level.next, &level.d}) {
       for (auto& field : *fields) field.assign(level.lattice.size, 0.0f);
     }
     if (i > 0) {
@@ -47,10 +47,10 @@ void VelocityMultigrid::smooth(Level& level, int degree, bool from_zero) {
   for (int step = 0; step < degree; ++step) {
     if (step > 0) recurrence.next();
     if (from_zero && step == 0) {
-      chebyshevStart(*level.blocks, level.right, recurrence.scale(), view(level.next), view(level.x));
+      chebyshevStart(*level.blocks, level.right, recurrence.scale(), view(level.d), view(level.x));
     } else {
       chebyshevStep(l, *level.blocks, constView(level.x), level.right, recurrence.keep(), recurrence.scale(),
-                    view(level.next));
+                    view(level.d), view(level.next));
       level.x.swap(level.next);
     }
     for (auto& field : level.x) fillHalo(l, field);
@@ -90,7 +90,7 @@ std::size_t VelocityMultigrid::bytes() const {
   std::size_t sum = 0;
   for (const Level& level : levels_) {
     sum += level.own.bytes();
-    for (const auto* fields : {&level.transfer, &level.x, &level.next, &level.b}) {
+    for (const auto* fields : {&level.transfer, &level.x, &level.next, &level.b, &level.d}) {
       for (const auto& field : *fields) sum += field.size() * sizeof(float);
     }
   }

@@ -27,7 +27,7 @@ class VelocityMultigrid {
     Lattice lattice;
     FaceBlocks<float> own;
     const FaceBlocks<float>* blocks = nullptr;
-    FaceField<float> transfer, x, next, b;
+    FaceField<float> transfer, x, next, b, d;
     ChebyshevRange range;
     Faces<const float> right{};
   };

@@ -129,14 +129,16 @@ TEST(FastSolver, ColumnsOfTheBodiesAreThePlainRows) {
   }
 }
 
+// To the tolerance that leaves accelerations right to 1e-4; closer, large viscous numbers meet single precision's floor
+// and begin a second cycle.
 TEST(FastSolver, IterationsDependNeitherOnTheMeshNorOnViscosity) {
   for (const double fill : {1.5, 0.6}) {
     for (const double number : {0.0, 1.0, 100.0, 1e4}) {
       StepVector x;
-      const int coarse = SphereStep({16, 16, 16}, number, fill).solve(1e-5, x).iterations;
-      const int fine = SphereStep({32, 32, 32}, number, fill).solve(1e-5, x).iterations;
+      const int coarse = SphereStep({16, 16, 16}, number, fill).solve(1e-4, x).iterations;
+      const int fine = SphereStep({32, 32, 32}, number, fill).solve(1e-4, x).iterations;
       EXPECT_LE(fine, 1.5 * coarse) << "viscous number " << number << ", fill " << fill;
-      EXPECT_LE(fine, 40) << "viscous number " << number << ", fill " << fill;
+      EXPECT_LE(fine, 30) << "viscous number " << number << ", fill " << fill;
     }
   }
 }

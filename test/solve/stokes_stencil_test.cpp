@@ -128,21 +128,21 @@ TEST_P(StokesStencil, SmootherDividesByTheSmoothingDiagonal) {
   effectiveMass(c, effective);
   const FaceField<double> AU = plainMomentum();
   const FaceBlocks<float> single = faces.converted<float>();
-  FaceField<float> x, b, next;
+  FaceField<float> x, b, d, next;
   for (int a = 0; a < 3; ++a) {
     x[a].assign(U[a].begin(), U[a].end());
-    b[a].assign(l.size, 0.0f);
+    for (auto* field : {&b[a], &d[a], &next[a]}) field->assign(l.size, 0.0f);
     for (float& v : b[a]) v = static_cast<float>(unit(random));
-    next[a] = x[a];
-    for (float& v : next[a]) v -= 1.0f;  // the iterate before
+    for (float& v : d[a]) v = 1.0f;
   }
   const auto constant = [](const FaceField<float>& f) { return Faces<const float>{f[0].data(), f[1].data(), f[2].data()}; };
   const auto mutableView = [](FaceField<float>& f) { return Faces<float>{f[0].data(), f[1].data(), f[2].data()}; };
-  chebyshevStep(l, single, constant(x), constant(b), 0.5f, 0.25f, mutableView(next));
+  chebyshevStep(l, single, constant(x), constant(b), 0.5f, 0.25f, mutableView(d), mutableView(next));
   forEachCell([&](std::ptrdiff_t f) {
     for (int a = 0; a < 3; ++a) {
       if (!(c.mass[a][f] > 0.0)) continue;
       const double step = 0.5 + 0.25 * (b[a][f] - AU[a][f]) / diagonal[a][f];
+      EXPECT_NEAR(d[a][f], step, 2e-6 * (1.0 + std::abs(AU[a][f])));
       EXPECT_NEAR(next[a][f], U[a][f] + step, 2e-6 * (1.0 + std::abs(AU[a][f])));
       const double tie = (effective[a][f] - c.mass[a][f]) / diagonal[a][f];
       EXPECT_NEAR(transfer[a][f], std::max(0.0, 1.0 - tie), 1e-6);
