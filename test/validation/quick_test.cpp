@@ -10,16 +10,21 @@
 #include "framework/runner.h"
 
 namespace monolith {
+
+void PrintTo(const Case& c, std::ostream* out) { *out << c.title; }  // for messages of gtest
+
 namespace {
+
+using CaseRun = Run;  // ::testing::Test has a Run of its own
 
 class QuickCase : public ::testing::TestWithParam<Case> {};
 
 TEST_P(QuickCase, MeetsItsGoalsAndOrders) {
   const Case& what = GetParam();
-  std::vector<Run> runs;
+  std::vector<CaseRun> runs;
   for (const Variant& variant : variantsOf(what, Extent::kQuick, {})) {
     runs.push_back(execute(what, variant));
-    const Run& run = runs.back();
+    const CaseRun& run = runs.back();
     EXPECT_TRUE(run.failure.empty()) << run.variant << ": " << run.failure;
     if (!run.judged) continue;
     for (const Measurement& m : run.measurements) {
@@ -70,14 +75,14 @@ Case syntheticCase(double order) {
   return c;
 }
 
-std::vector<Run> runsOf(const Case& c, const Overrides& overrides = {}) {
-  std::vector<Run> runs;
+std::vector<CaseRun> runsOf(const Case& c, const Overrides& overrides = {}) {
+  std::vector<CaseRun> runs;
   for (const Variant& v : variantsOf(c, Extent::kFull, overrides)) runs.push_back(execute(c, v));
   return runs;
 }
 
 TEST(Runner, SweepsVaryOneThingAtATime) {
-  const std::vector<Run> runs = runsOf(syntheticCase(2.0));
+  const std::vector<CaseRun> runs = runsOf(syntheticCase(2.0));
   ASSERT_EQ(runs.size(), 4u);  // three resolutions, and the base's with another step
   EXPECT_TRUE(runs[1].judged);
   EXPECT_FALSE(runs[3].judged);
@@ -88,7 +93,7 @@ TEST(Runner, SweepsVaryOneThingAtATime) {
 
 TEST(Runner, FindsTheOrder) {
   for (const double order : {1.0, 2.5}) {
-    const std::vector<Run> runs = runsOf(syntheticCase(order));
+    const std::vector<CaseRun> runs = runsOf(syntheticCase(order));
     EXPECT_NEAR(observedOrder(runs, {"v", "q", false, 0.0}), order, 1e-9);
     EXPECT_NEAR(observedOrder(runs, {"v", "q", true, 0.0}), 0.0, 1e-9);
     EXPECT_TRUE(std::isnan(observedOrder(runs, {"v", "other", false, 0.0})));
@@ -98,14 +103,14 @@ TEST(Runner, FindsTheOrder) {
 TEST(Runner, OverridesMergeVariantsAndAreNotJudged) {
   Overrides overrides;
   overrides.cells_across = 4.0;
-  const std::vector<Run> runs = runsOf(syntheticCase(2.0), overrides);
+  const std::vector<CaseRun> runs = runsOf(syntheticCase(2.0), overrides);
   ASSERT_EQ(runs.size(), 2u);   // two steps
   EXPECT_TRUE(runs[0].judged);  // one of the variants had this resolution by itself
   EXPECT_FALSE(runs[1].judged);
 }
 
 TEST(RunRecord, HasALineForEachMeasurementAndEscapes) {
-  Run run;
+  CaseRun run;
   run.case_name = "a \"case\"";
   run.variant = "v";
   run.measurements = {{"q", 1.0, 2.0, 0.1}, {"r", std::nan(""), 0.0, 0.0, 1.0}};

@@ -89,7 +89,7 @@ std::vector<Measurement> torque(double ratio, const Numerics& numerics, Meter& m
   const double goal = dragGoal(2.0 * a * cells);
   return {{"torque of the inner cylinder", found, expected, goal},
           {"torque of the ring", simulation.bodyStates()[1].liquid.torque[2], expected, goal},
-          {"speed midway", speed, a * a / (b * b - a * a) * (b * b / r - r), goal}};
+          {"speed midway", speed, a * a / (b * b - a * a) * (b * b / r - r), 0.0}};
 }
 
 std::vector<Variant> variants(Extent extent) {
@@ -100,7 +100,7 @@ std::vector<Variant> variants(Extent extent) {
       if (!full && (row.ratio != 0.5 || offset > 0.0)) continue;
       Sweep sweep;
       sweep.base.cells_across = 10.0;
-      sweep.cells = full ? std::vector<double>{4, 6, 8, 10, 16} : std::vector<double>{4, 10};
+      sweep.cells = full ? std::vector<double>{4, 6, 8, 10, 16} : std::vector<double>{10, 16};
       sweep.fractions = full && offset == 0.0;
       char name[64];
       std::snprintf(name, sizeof name, "drag, diameter %g of the width%s", row.ratio, offset > 0.0 ? ", shifted" : "");

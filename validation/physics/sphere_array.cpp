@@ -54,7 +54,7 @@ std::vector<Variant> variants(Extent extent) {
       if (extent == Extent::kQuick && (diameter != 0.5 || o % 2 == 1)) continue;
       Sweep sweep;
       sweep.base.cells_across = 10.0;
-      sweep.cells = extent == Extent::kQuick ? std::vector<double>{4, 10} : std::vector<double>{4, 6, 8, 10, 16};
+      sweep.cells = extent == Extent::kQuick ? std::vector<double>{4, 16} : std::vector<double>{4, 6, 8, 10, 16};
       if (diameter == 0.625) sweep.cells = {5, 10, 15, 20};  // even numbers of cells
       if (extent == Extent::kFull && o == 2 && diameter == 0.5) {
         sweep.tolerances = {1e-2, 1e-3, 1e-4, 1e-6};
