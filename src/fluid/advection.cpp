@@ -1,6 +1,7 @@
 #include "fluid/advection.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "fluid/interpolation.h"
 #include "fluid/row_advection.h"
@@ -8,7 +9,13 @@
 namespace monolith {
 namespace {
 
-// Beyond the walls the field mirrors what is inside, with the sign given.
+// The mirror image with the sign turned where the layer at the wall is resolved, the profile goes on straight. A layer far
+// thinner than a cell would have a jump there, at which the cubic overshoots step by step: there liquid slips.
+double beyondStickingWall(double first, double second) {
+  return std::clamp(2.0 * first - second, -std::abs(first), std::abs(first));
+}
+
+// Beyond the walls the field mirrors what is inside, but see above.
 void mirrorIntoHalo(const Lattice& l, int face_axis, bool no_slip, std::vector<double>& field) {
   for (int axis = 0; axis < 3; ++axis) {
     if (l.periodic[axis]) continue;
@@ -23,6 +30,10 @@ void mirrorIntoHalo(const Lattice& l, int face_axis, bool no_slip, std::vector<d
         if (axis == face_axis) {
           row[-s] = sign * row[s];
           row[(n + 1) * s] = sign * row[(n - 1) * s];
+        } else if (no_slip && n > 1) {
+          row[-s] = beyondStickingWall(row[0], row[s]);
+          row[n * s] = beyondStickingWall(row[(n - 1) * s], row[(n - 2) * s]);
+          row[(n + 1) * s] = 2.0 * row[n * s] - row[(n - 1) * s];
         } else {
           row[-s] = sign * row[0];
           row[n * s] = sign * row[(n - 1) * s];

@@ -24,7 +24,7 @@ void continueIntoAir(const Lattice& l, const SolidFractions& solids, FaceField<d
       const int at[3] = {0, j, k};
       for (int i = 0; i < l.faceEnd(0); ++i) {
         const auto f = row + i;
-        if (before[f] || !(solids.distance[a][f] > 0.0)) continue;
+        if (before[f] || !(solids.distance[a][f] > 0.0 && solids.fluid[a][f] > 0.0)) continue;
         double sum = 0.0;
         int count = 0;
         for (int b = 0; b < 3; ++b) {

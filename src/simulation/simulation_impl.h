@@ -77,7 +77,8 @@ struct Simulation::Impl {
   double contactReach(double dt) const;
   BodyPlan planBodies(const StepWeights& w, const std::vector<char>& closing, std::vector<Contact>& contacts) const;
   void prepareSolve(const StepWeights& w);
-  void advectLiquid(const StepWeights& w, FaceField<double>& free_velocity);
+  void advectLiquid(const StepWeights& w, FaceField<double>& free_velocity, FaceField<double>& gained);
+  void guess(const StepWeights& w, const FaceField<double>& gained);
   CoupledReport solveWithLiquid(const StepWeights& w, const std::vector<Contact>& contacts, StepReport& report);
   void takeMeans(const StepWeights& w, const std::vector<Wrench>& liquid_before);
   void moveLiquid(const StepWeights& w, const FaceField<double>& velocity_before, StepReport& report);

@@ -51,9 +51,8 @@ void Simulation::Impl::prepareSolve(const StepWeights& w) {
   step_surface[0].extendIntoSolids(step_solids.cell_distance);
 }
 
-void Simulation::Impl::advectLiquid(const StepWeights& w, FaceField<double>& free_velocity) {
+void Simulation::Impl::advectLiquid(const StepWeights& w, FaceField<double>& free_velocity, FaceField<double>& gained) {
   if (w.order == 2 && hasLiquid()) {
-    FaceField<double> gained;
     advectAccelerated(grid, state.coupled.velocity, state.acceleration, state.known, w.dt, carried, gained);
     free_velocity = carried;
     for (int a = 0; a < 3; ++a) {
@@ -69,13 +68,27 @@ void Simulation::Impl::advectLiquid(const StepWeights& w, FaceField<double>& fre
   }
 }
 
+// The solve starts from what there is after another step of the same accelerations.
+void Simulation::Impl::guess(const StepWeights& w, const FaceField<double>& gained) {
+  state.coupled.twists.resize(state.bodies.size());
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+    state.coupled.twists[b] = state.bodies[b].twist;
+    if (w.order == 2) state.coupled.twists[b] += w.dt * state.body_acceleration[b];
+  }
+  for (int a = 0; a < 3; ++a) {
+    for (std::size_t i = 0; i < gained[a].size(); ++i) {
+      if (state.known[a][i]) state.coupled.velocity[a][i] = carried[a][i] + w.dt * gained[a][i];
+    }
+  }
+}
+
 CoupledReport Simulation::Impl::solveWithLiquid(const StepWeights& w, const std::vector<Contact>& contacts,
                                                 StepReport& step) {
   const LiquidDescription& liquid = scene.liquid;
-  FaceField<double> free_velocity;
+  FaceField<double> free_velocity, gained;
   {
     const StageClock clock(step.times.advection);
-    advectLiquid(w, free_velocity);
+    advectLiquid(w, free_velocity, gained);
   }
   {
     const StageClock clock(step.times.geometry);
@@ -93,8 +106,7 @@ CoupledReport Simulation::Impl::solveWithLiquid(const StepWeights& w, const std:
   CoupledOptions options;
   options.tolerance = scene.solver.tolerance * (state.started ? 1.0 : kFirstTolerance);
   options.maximum_iterations = scene.solver.maximum_iterations;
-  state.coupled.twists.resize(state.bodies.size());
-  for (std::size_t b = 0; b < state.bodies.size(); ++b) state.coupled.twists[b] = state.bodies[b].twist;
+  guess(w, gained);
   const auto solve = [&](const CoupledOptions& with) {
     return system.solve(free_velocity, plan.free_twists, scaled, laws.of(contacts), scene.gravity, with, state.coupled);
   };
