@@ -1,6 +1,6 @@
 #pragma once
-// The bodies' columns of the step over packed unknowns (packed_system.h): B = [A_uv; -C_v] as one sparse column block per
-// free body, rows of six numbers, and the dense A_vv, from the rows of body_rows.h.
+// The bodies' columns of the step over packed unknowns (packed_system.h): B = [A_uv; -C_v] as one sparse column block
+// per free body, rows of six numbers, and the dense A_vv, from the rows of body_rows.h.
 
 #include <Eigen/Dense>
 #include <vector>

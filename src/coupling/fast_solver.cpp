@@ -52,9 +52,7 @@ struct FastSolver::Impl {
   PackedSystem system;
   Eigen::VectorXd compliance;  // of each contact row
 
-  void setBorder(const ContactBorder& border) {
-    system.setBorder(border, compliance, kProximity / kContactCompliance);
-  }
+  void setBorder(const ContactBorder& border) { system.setBorder(border, compliance, kProximity / kContactCompliance); }
 
   // Response of the twists of the bodies in contact to unit impulses, by one liquid solve each; false if one fails.
   bool solveResponse(const ContactRows& contacts, const CoupledOptions& options, CoupledReport& report,

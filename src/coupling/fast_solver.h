@@ -1,13 +1,13 @@
 #pragma once
 // `fast`: flexible GMRES on the saddle point, matrix-free, with the projection preconditioner (Griffith 2009; Cai,
-// Nonaka, Bell, Griffith & Donev 2014): one multigrid cycle on A_uu, one on L = C mass^-1 C^T with p^ = phi + 2 N g (Cahouet &
-// Chabard 1988), and the bodies by an approximate Schur complement S, their inertia and their resistance to motion in
-// this liquid, which ages slowly and is kept while it serves.
+// Nonaka, Bell, Griffith & Donev 2014): one multigrid cycle on A_uu, one on L = C mass^-1 C^T with p^ = phi + 2 N g
+// (Cahouet & Chabard 1988), and the bodies by an approximate Schur complement S, their inertia and their resistance to
+// motion in this liquid, which ages slowly and is kept while it serves.
 //
 // Contacts that press are rows of the same system: the normal velocity of each, the tangential velocity of those that
-// stick; a contact that slips pushes along (n + mu d) lambda with a direction d opposite to its slip. What each contact does is found
-// by staggered projections on J S^-1 J^T and verified on the full solution, until Coulomb's law holds there: a
-// quasi-Newton iteration that usually needs one solve with the liquid.
+// stick; a contact that slips pushes along (n + mu d) lambda with a direction d opposite to its slip. What each contact
+// does is found by staggered projections on J S^-1 J^T and verified on the full solution, until Coulomb's law holds
+// there: a quasi-Newton iteration that usually needs one solve with the liquid.
 
 #include <memory>
 

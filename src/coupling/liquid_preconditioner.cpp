@@ -87,7 +87,8 @@ void LiquidPreconditioner::apply(const float* r, float flux_scale, float* x) {
   for (const PressureRegion& region : problem_->regions) {
     if (!region.sealed) continue;
     removeMean(region.cells, phi);
-    // The constant of a pocket between free bodies is their doing alone; any positive scale lets the Krylov method find it.
+    // The constant of a pocket between free bodies is their doing alone; any positive scale lets the Krylov method find
+    // it.
     if (!region.null_mode) {
       for (const auto cell : region.cells) phi[cell] += constants[sealed];
     }

@@ -7,9 +7,9 @@
 //   u = u* + mass^-1 C^T L^-1 g          where inertia counts: the projection method (Griffith 2009; Cai et al. 2014)
 //   u = u*                               where viscosity rules: block triangular
 //
-// w = 2 N times the part of the cell's normal stress that is in the liquid: next to a free surface the Schur complement is
-// as much softer. The projection is exact without viscosity; with much of it, it leaves strong stresses at boundaries,
-// and its iterations grow with N, while those of the triangular form do not.
+// w = 2 N times the part of the cell's normal stress that is in the liquid: next to a free surface the Schur complement
+// is as much softer. The projection is exact without viscosity; with much of it, it leaves strong stresses at
+// boundaries, and its iterations grow with N, while those of the triangular form do not.
 
 #include <vector>
 
@@ -27,8 +27,8 @@ class LiquidPreconditioner {
   void set(const StepProblem& problem, const FaceBlocks<float>& faces, const CellBlocks<float>& cells,
            FaceField<float>&& transfer, FaceField<float>&& conductance);
 
-  // x ~ the solution for right side r, its flux times flux_scale: U by components, then p^, lattice.size each. Halos of x
-  // are filled, those of r not read.
+  // x ~ the solution for right side r, its flux times flux_scale: U by components, then p^, lattice.size each. Halos of
+  // x are filled, those of r not read.
   void apply(const float* r, float flux_scale, float* x);
 
   std::size_t bytes() const { return velocity_.bytes() + pressure_.bytes() + 2 * g_.size() * sizeof(float); }

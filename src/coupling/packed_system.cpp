@@ -121,8 +121,8 @@ void PackedSystem::setBorder(const ContactBorder& physical, const Eigen::VectorX
 }
 
 template <class Real>
-void PackedSystem::apply(const FaceBlocks<Real>& faces, const CellBlocks<Real>& cells,
-                         const BodyColumns<Real>& columns, std::vector<Real>& x, std::vector<Real>& y) const {
+void PackedSystem::apply(const FaceBlocks<Real>& faces, const CellBlocks<Real>& cells, const BodyColumns<Real>& columns,
+                         std::vector<Real>& x, std::vector<Real>& y) const {
   using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
   const Lattice& l = lattice();
   const std::size_t size = l.size, liquid = liquidSize();
@@ -178,11 +178,11 @@ KrylovReport PackedSystem::solve(const std::vector<double>& rhs, std::vector<dou
   KrylovOptions k;
   k.absolute_tolerance = goal;
   k.maximum_iterations = options.maximum_iterations;
-  const KrylovReport done = krylov_.solve(
-      {[this](auto& from, auto& to) { apply(faces_, cells_, columns_, from, to); },
-       [this](auto& from, auto& to) { apply(faces_single_, cells_single_, columns_single_, from, to); },
-       [this](auto& from, auto& to) { precondition(from, to); }},
-      rhs, x, k);
+  const KrylovReport done =
+      krylov_.solve({[this](auto& from, auto& to) { apply(faces_, cells_, columns_, from, to); },
+                     [this](auto& from, auto& to) { apply(faces_single_, cells_single_, columns_single_, from, to); },
+                     [this](auto& from, auto& to) { precondition(from, to); }},
+                    rhs, x, k);
   report.iterations += done.iterations;
   ++report.solves;
   return done;

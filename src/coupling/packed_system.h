@@ -1,11 +1,12 @@
 #pragma once
-// The step's linear system as `fast` solves it: all unknowns in one vector - U by components, p^, lattice.size each, the
-// twists of the free bodies times their scale, the impulses of the contacts in the border - and flexible GMRES with its
-// preconditioner: the liquid's (liquid_preconditioner.h), then an approximate Schur complement S of the bodies, their inertia
-// and their resistance to motion in this liquid, bordered by the contacts. S ages slowly and is kept while it serves.
+// The step's linear system as `fast` solves it: all unknowns in one vector - U by components, p^, lattice.size each,
+// the twists of the free bodies times their scale, the impulses of the contacts in the border - and flexible GMRES with
+// its preconditioner: the liquid's (liquid_preconditioner.h), then an approximate Schur complement S of the bodies,
+// their inertia and their resistance to motion in this liquid, bordered by the contacts. S ages slowly and is kept
+// while it serves.
 //
-// The rows of the divergence are multiplied by 2 N where that is more than one: so much of a stress does a divergence make, and
-// a residual that weighs it less lets velocities pass whose strain rates are wrong.
+// The rows of the divergence are multiplied by 2 N where that is more than one: so much of a stress does a divergence
+// make, and a residual that weighs it less lets velocities pass whose strain rates are wrong.
 
 #include <Eigen/Dense>
 #include <vector>
@@ -47,8 +48,8 @@ class PackedSystem {
 
   // x + one cycle of the preconditioner on its residual.
   std::vector<double> improved(const std::vector<double>& rhs, const std::vector<double>& x);
-  KrylovReport solve(const std::vector<double>& rhs, std::vector<double>& x, double goal,
-                     const CoupledOptions& options, CoupledReport& report);
+  KrylovReport solve(const std::vector<double>& rhs, std::vector<double>& x, double goal, const CoupledOptions& options,
+                     CoupledReport& report);
 
   // S is renewed before it is next used if the solves took clearly more iterations than when it was made...
   void judgeAge(const CoupledReport& report);

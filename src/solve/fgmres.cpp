@@ -9,7 +9,8 @@ namespace {
 
 // A cycle in single precision does not reduce the true residual by more than this.
 constexpr double kLeastReduction = 3e-6;
-// Below kFloor of where a cycle began, one that has gained next to nothing in kPatience iterations has met its precision.
+// Below kFloor of where a cycle began, one that has gained next to nothing in kPatience iterations has met its
+// precision.
 constexpr double kFloor = 1e-4;
 constexpr int kPatience = 4;
 // The estimate of a cycle may be a little off: aim lower than the goal.
@@ -28,9 +29,9 @@ double sumOfProducts(const float* x, const float* y, std::ptrdiff_t size) {
   return total;
 }
 
-// One step of modified Gram-Schmidt and the beginning of the next: w -= a v, then the product of w with `next` (which may be
-// w itself). Classical Gram-Schmidt would read the basis as often and loses orthogonality after some ten vectors of this
-// precision. 16 bytes and 4 flops an entry, bound by memory.
+// One step of modified Gram-Schmidt and the beginning of the next: w -= a v, then the product of w with `next` (which
+// may be w itself). Classical Gram-Schmidt would read the basis as often and loses orthogonality after some ten vectors
+// of this precision. 16 bytes and 4 flops an entry, bound by memory.
 double subtract(const std::vector<float>* v, double a, const std::vector<float>& next, std::vector<float>& w) {
   const float factor = static_cast<float>(a);
   return blockedSum<double>(w.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {

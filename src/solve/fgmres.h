@@ -1,9 +1,9 @@
 #pragma once
 // Flexible GMRES (Saad 1993, SIAM J. Sci. Comput. 14, 461), right preconditioned, inside iterative refinement: the
-// residual b - A x is formed in double precision at each restart, the correction is found in single precision on vectors
-// half as wide. Keeping the directions P^-1 v beside the basis costs memory and pays: the operator sees their rounding,
-// where a correction P^-1 (V y) formed at the end carries that of a large, smooth pressure into the solution. Minimises
-// |b - A x|_2 over each cycle; the residual that it reports is the recomputed one.
+// residual b - A x is formed in double precision at each restart, the correction is found in single precision on
+// vectors half as wide. Keeping the directions P^-1 v beside the basis costs memory and pays: the operator sees their
+// rounding, where a correction P^-1 (V y) formed at the end carries that of a large, smooth pressure into the solution.
+// Minimises |b - A x|_2 over each cycle; the residual that it reports is the recomputed one.
 
 #include <Eigen/Dense>
 #include <functional>

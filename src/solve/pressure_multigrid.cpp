@@ -16,8 +16,8 @@ constexpr std::size_t kDirectCells = 216;
 constexpr double kShift = 1e-5;
 constexpr float kLargestLift = 1.5f;
 
-// A conductance g to the air says that the surface is 1/g cells above the cell's centre. The centre of the coarse cell is
-// half a fine cell lower, or higher if the surface runs through it.
+// A conductance g to the air says that the surface is 1/g cells above the cell's centre. The centre of the coarse cell
+// is half a fine cell lower, or higher if the surface runs through it.
 float liftedToAir(float g, bool inside) {
   return inside ? 2.0f * g / (1.0f - 0.5f * std::min(g, kLargestLift)) : 2.0f * g / (1.0f + 0.5f * g);
 }
@@ -144,8 +144,8 @@ void PressureMultigrid::finish(const Network& network, Level& level) const {
   level.range.ratio = kRatio;
 }
 
-// Cells in solids and beyond the walls get the value next to them, so that interpolation sees no boundary there. Cells in
-// the air keep zero, their pressure.
+// Cells in solids and beyond the walls get the value next to them, so that interpolation sees no boundary there. Cells
+// in the air keep zero, their pressure.
 void PressureMultigrid::findExtension(const Network& network, Level& level) const {
   const Lattice& l = level.lattice;
   level.extension.clear();
@@ -305,7 +305,8 @@ std::size_t PressureMultigrid::bytes() const {
   std::size_t sum = inverse_.size() * sizeof(float);
   for (const Level& level : levels_) {
     sum += level.blocks.bytes() + level.extension.size() * sizeof(Extension);
-    for (const auto* field : {&level.mask, &level.x, &level.next, &level.b, &level.d}) sum += field->size() * sizeof(float);
+    for (const auto* field : {&level.mask, &level.x, &level.next, &level.b, &level.d})
+      sum += field->size() * sizeof(float);
   }
   return sum;
 }

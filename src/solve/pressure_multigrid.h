@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "solve/chebyshev.h"
-#include "solve/stencil_blocks.h"
 #include "solve/staggered_operator.h"
+#include "solve/stencil_blocks.h"
 
 namespace monolith {
 

@@ -26,8 +26,7 @@ void restrictCells(const Lattice& fine, const std::vector<Real>& from, const Lat
       const Real* f = from.data() + fine.index(0, 2 * j, 2 * k);
       Real* out = to.data() + coarse.index(0, j, k);
       for (int i = 0; i < coarse.n[0]; ++i, f += 2) {
-        out[i] = Real(0.125) *
-                 (f[0] + f[1] + f[sy] + f[sy + 1] + f[sz] + f[sz + 1] + f[sy + sz] + f[sy + sz + 1]);
+        out[i] = Real(0.125) * (f[0] + f[1] + f[sy] + f[sy + 1] + f[sz] + f[sz + 1] + f[sy + sz] + f[sy + sz + 1]);
       }
     }
   }
@@ -79,8 +78,8 @@ void restrictResidual(const Lattice& fine, int axis, const float* from, const La
 #pragma omp simd
         for (int i = 0; i < width; ++i) {
           const float* g = f + i;
-          sum[i] = 0.125f * (g[0] + g[across]) +
-                   0.0625f * (g[-along] + g[across - along] + g[along] + g[across + along]);
+          sum[i] =
+              0.125f * (g[0] + g[across]) + 0.0625f * (g[-along] + g[across - along] + g[along] + g[across + along]);
         }
 #pragma omp simd
         for (int i = 0; i < end[0]; ++i) out[i] = sum[2 * i] + sum[2 * i + 1];
@@ -109,8 +108,8 @@ void restrictResidual(const Lattice& fine, const float* from, const Lattice& coa
 
 namespace {
 
-// Coarse row interpolated to the y and z of a fine row: the nearer one and the other along each axis, with weights. `faces`:
-// axis along which both lie on the same planes, or -1.
+// Coarse row interpolated to the y and z of a fine row: the nearer one and the other along each axis, with weights.
+// `faces`: axis along which both lie on the same planes, or -1.
 class CoarseRow {
  public:
   CoarseRow(const Lattice& coarse, int faces) : coarse_(coarse), faces_(faces), values_(coarse.n[0] + 3) {}
@@ -195,8 +194,8 @@ void prolongateCells(const Lattice& coarse, const float* from, const Lattice& fi
   }
 }
 
-#define MONOLITH_INSTANTIATE(Real)                                                                                \
-  template void restrictCells(const Lattice&, const std::vector<Real>&, const Lattice&, std::vector<Real>&);       \
+#define MONOLITH_INSTANTIATE(Real)                                                                           \
+  template void restrictCells(const Lattice&, const std::vector<Real>&, const Lattice&, std::vector<Real>&); \
   template void restrictFaces(const Lattice&, int, const std::vector<Real>&, const Lattice&, std::vector<Real>&);
 MONOLITH_INSTANTIATE(double)
 MONOLITH_INSTANTIATE(float)

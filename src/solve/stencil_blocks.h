@@ -1,10 +1,12 @@
 #pragma once
 // A stencil operator on a lattice, compressed: x-rows are cut into blocks of kLanes unknowns, and each block names a
-// pattern, the coefficients of its lanes. Blocks that look alike - everything away from boundaries, and most of what lies
-// along walls - share one pattern, so that the coefficients of a level stay in the first cache and only the fields are
-// streamed. Blocks without any unknown are left out; lanes without one have coefficients of zero.
+// pattern, the coefficients of its lanes. Blocks that look alike - everything away from boundaries, and most of what
+// lies along walls - share one pattern, so that the coefficients of a level stay in the first cache and only the fields
+// are streamed. Blocks without any unknown are left out; lanes without one have coefficients of zero.
 //
 // Coefficient q of lane i of pattern p: values[(p * Count + q) * kLanes + i].
+
+#include <omp.h>
 
 #include <algorithm>
 #include <array>
@@ -13,8 +15,6 @@
 #include <string_view>
 #include <unordered_map>
 #include <vector>
-
-#include <omp.h>
 
 #include "solve/lattice.h"
 
@@ -29,8 +29,8 @@ class StencilBlocks {
   static constexpr int kCount = Count;
   using Row = std::array<std::vector<Real>, Count>;
 
-  // fill(component, row, width, out) writes the coefficients of `width` lanes from index `row` on; all zero: no unknown.
-  // `first[component]`: index along x of the first lane of a row.
+  // fill(component, row, width, out) writes the coefficients of `width` lanes from index `row` on; all zero: no
+  // unknown. `first[component]`: index along x of the first lane of a row.
   template <class FillRow>
   void build(const Lattice& l, const std::vector<int>& first, FillRow&& fill);
 
@@ -82,7 +82,8 @@ class StencilBlocks {
     for (const Segment& segment : segments_) {
       const auto last = std::min<std::ptrdiff_t>(end, segment.end);
       for (auto i = std::max<std::ptrdiff_t>(begin, segment.begin); i < last; ++i) {
-        f(segment.component, static_cast<std::ptrdiff_t>(blocks_[i].place), values_.data() + blocks_[i].pattern * kSize);
+        f(segment.component, static_cast<std::ptrdiff_t>(blocks_[i].place),
+          values_.data() + blocks_[i].pattern * kSize);
       }
     }
   }

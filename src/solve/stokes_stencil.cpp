@@ -15,8 +15,8 @@ struct Others {
 };
 constexpr Others kOthers[3] = {{{1, 2}, {0, 1}, {0, 0}}, {{0, 2}, {0, 2}, {1, 0}}, {{0, 1}, {1, 2}, {1, 1}}};
 
-// A U of the lanes from f on. Per face 21 flops over the pattern's 11 and the fields' 15 loads, all but three of which hit
-// the first cache: bound by its load ports.
+// A U of the lanes from f on. Per face 21 flops over the pattern's 11 and the fields' 15 loads, all but three of which
+// hit the first cache: bound by its load ports.
 template <class Real>
 inline void momentum(const Lattice& l, int a, std::ptrdiff_t f, const Real* k, const Faces<const Real>& U, Real* out) {
   const auto sa = l.stride[a];
@@ -29,10 +29,9 @@ inline void momentum(const Lattice& l, int a, std::ptrdiff_t f, const Real* k, c
     const Real at = u[i];
     const Real own = k[i] * at + k[S::kNormalLow * kLanes + i] * (at - u[i - sa]) +
                      k[S::kNormalHigh * kLanes + i] * (at - u[i + sa]);
-    const Real shear = k[S::kShearLow * kLanes + i] * (at - u[i - sb]) +
-                       k[(S::kShearLow + 1) * kLanes + i] * (at - u[i - sc]) +
-                       k[S::kShearHigh * kLanes + i] * (at - u[i + sb]) +
-                       k[(S::kShearHigh + 1) * kLanes + i] * (at - u[i + sc]);
+    const Real shear =
+        k[S::kShearLow * kLanes + i] * (at - u[i - sb]) + k[(S::kShearLow + 1) * kLanes + i] * (at - u[i - sc]) +
+        k[S::kShearHigh * kLanes + i] * (at - u[i + sb]) + k[(S::kShearHigh + 1) * kLanes + i] * (at - u[i + sc]);
     const Real cross = k[S::kCrossLow * kLanes + i] * (v[i] - v[i - sa]) -
                        k[S::kCrossHigh * kLanes + i] * (v[i + sb] - v[i + sb - sa]) +
                        k[(S::kCrossLow + 1) * kLanes + i] * (w[i] - w[i - sa]) -
@@ -200,7 +199,8 @@ void applyDivergence(const Lattice& l, const CellBlocks<Real>& blocks, const Fac
     for (int i = 0; i < kLanes; ++i) {
       const Real flux = k[3 * kLanes + i] * u[i + 1] - k[i] * u[i] + k[4 * kLanes + i] * v[i + sy] -
                         k[kLanes + i] * v[i] + k[5 * kLanes + i] * w[i + sz] - k[2 * kLanes + i] * w[i];
-      const Real any = k[i] + k[kLanes + i] + k[2 * kLanes + i] + k[3 * kLanes + i] + k[4 * kLanes + i] + k[5 * kLanes + i];
+      const Real any =
+          k[i] + k[kLanes + i] + k[2 * kLanes + i] + k[3 * kLanes + i] + k[4 * kLanes + i] + k[5 * kLanes + i];
       out[i] = any > Real(0) ? start[i] - flux : Real(0);
     }
   });
@@ -257,19 +257,19 @@ void project(const Lattice& l, const FaceBlocks<float>& blocks, const Faces<cons
   });
 }
 
-#define MONOLITH_INSTANTIATE(Real, From)                                                                          \
-  template void buildFaceBlocks(const StaggeredCoefficients<From>&, FaceBlocks<Real>&, FaceField<float>*,          \
-                                FaceField<float>*);                                                                \
+#define MONOLITH_INSTANTIATE(Real, From)                                                                  \
+  template void buildFaceBlocks(const StaggeredCoefficients<From>&, FaceBlocks<Real>&, FaceField<float>*, \
+                                FaceField<float>*);                                                       \
   template void buildCellBlocks(const StaggeredCoefficients<From>&, CellBlocks<Real>&);
 MONOLITH_INSTANTIATE(double, double)
 MONOLITH_INSTANTIATE(float, double)
 MONOLITH_INSTANTIATE(float, float)
 #undef MONOLITH_INSTANTIATE
-#define MONOLITH_INSTANTIATE(Real)                                                                                \
-  template void applyMomentum(const Lattice&, const FaceBlocks<Real>&, bool, const Faces<const Real>&, const Real*, \
-                              const Faces<Real>&);                                                                 \
-  template void applyDivergence(const Lattice&, const CellBlocks<Real>&, const Faces<const Real>&, Real,           \
-                                const Real*, Real*);
+#define MONOLITH_INSTANTIATE(Real)                                                                                    \
+  template void applyMomentum(const Lattice&, const FaceBlocks<Real>&, bool, const Faces<const Real>&, const Real*,   \
+                              const Faces<Real>&);                                                                    \
+  template void applyDivergence(const Lattice&, const CellBlocks<Real>&, const Faces<const Real>&, Real, const Real*, \
+                                Real*);
 MONOLITH_INSTANTIATE(double)
 MONOLITH_INSTANTIATE(float)
 #undef MONOLITH_INSTANTIATE

@@ -1,9 +1,9 @@
 #pragma once
-// The operators of staggered_operator.h as compressed stencils (stencil_blocks.h), and the hot kernels of the fast solve.
-// staggered_operator.* is the plain form that tests hold them against.
+// The operators of staggered_operator.h as compressed stencils (stencil_blocks.h), and the hot kernels of the fast
+// solve. staggered_operator.* is the plain form that tests hold them against.
 //
-// Row of the viscous block at a face of axis a, with b, c the other two axes in order and differences taken first, so that
-// large viscous numbers cost no digits of smooth fields (v, w: components b, c):
+// Row of the viscous block at a face of axis a, with b, c the other two axes in order and differences taken first, so
+// that large viscous numbers cost no digits of smooth fields (v, w: components b, c):
 //
 //   (A U)[f] = tie u[f] + n- (u[f] - u[f-a]) + n+ (u[f] - u[f+a])
 //            + sum over (v, b), (w, c):  s- (u[f] - u[f-b]) + s+ (u[f] - u[f+b])
@@ -12,22 +12,25 @@
 #include <array>
 #include <vector>
 
-#include "solve/stencil_blocks.h"
 #include "solve/staggered_operator.h"
+#include "solve/stencil_blocks.h"
 
 namespace monolith {
 
 // Places of the coefficients in a face's pattern.
 struct FaceStencil {
   enum : int {
-    kTie,                            // mass + drag
-    kNormalLow, kNormalHigh,
-    kShearLow, kShearHigh = 5,       // of the pair with b; those with c follow each: kShearLow + 1, ...
-    kCrossLow = 7, kCrossHigh = 9,
-    kInverse = 11,                   // 1 over the smoothing diagonal
-    kTransfer,                       // share of a correction that comes from the coarser level: 1 - tie to solids/diagonal
+    kTie,  // mass + drag
+    kNormalLow,
+    kNormalHigh,
+    kShearLow,
+    kShearHigh = 5,  // of the pair with b; those with c follow each: kShearLow + 1, ...
+    kCrossLow = 7,
+    kCrossHigh = 9,
+    kInverse = 11,  // 1 over the smoothing diagonal
+    kTransfer,      // share of a correction that comes from the coarser level: 1 - tie to solids/diagonal
     kOpen,
-    kImpulse,                        // open over effective mass
+    kImpulse,  // open over effective mass
     kCount
   };
 };
@@ -45,7 +48,8 @@ using CellBlocks = StencilBlocks<Real, CellStencil::kCount>;
 template <class Real>
 using Faces = std::array<Real*, 3>;
 
-// Compresses a level. transfer and conductance (open^2/effective mass) are those per face, as fields; either may be null.
+// Compresses a level. transfer and conductance (open^2/effective mass) are those per face, as fields; either may be
+// null.
 template <class Real, class From>
 void buildFaceBlocks(const StaggeredCoefficients<From>& c, FaceBlocks<Real>& out, FaceField<float>* transfer,
                      FaceField<float>* conductance);
@@ -63,7 +67,8 @@ template <class Real>
 void applyDivergence(const Lattice& l, const CellBlocks<Real>& blocks, const Faces<const Real>& U, Real factor,
                      const Real* g, Real* y);
 
-// Chebyshev on A x = b: d = keep d + scale D^-1 (b - A x), next = x + d.
+// Chebyshev on A x = b: d = keep d + scale D^-1 (b - A x), next = x + d. Forming d from two iterates instead would stream a
+// fifth less and lose digits that large viscous numbers need.
 void chebyshevStep(const Lattice& l, const FaceBlocks<float>& blocks, const Faces<const float>& x,
                    const Faces<const float>& b, float keep, float scale, const Faces<float>& d,
                    const Faces<float>& next);

@@ -1,8 +1,8 @@
 #pragma once
-// One geometric multigrid V-cycle for the viscous block of the momentum equation, in single precision: a preconditioner,
-// not a solver. Chebyshev smoothing; the coarse operators are given, one StaggeredCoefficients a level. A face that is
-// tied to a solid has no coarse counterpart as stiff as itself: in both transfers it counts by its free share,
-// 1 - tie/diagonal, and the smoother does the rest. Linear: the same map on every call.
+// One geometric multigrid V-cycle for the viscous block of the momentum equation, in single precision: a
+// preconditioner, not a solver. Chebyshev smoothing; the coarse operators are given, one StaggeredCoefficients a level.
+// A face that is tied to a solid has no coarse counterpart as stiff as itself: in both transfers it counts by its free
+// share, 1 - tie/diagonal, and the smoother does the rest. Linear: the same map on every call.
 
 #include <vector>
 
@@ -14,7 +14,8 @@ namespace monolith {
 class VelocityMultigrid {
  public:
   // The finest level with its transfer weights, and the levels below it: coarse[1] to coarse[count - 1], each
-  // coarsened() of the one before. `fine` must outlive the multigrid. smoother_degree: Chebyshev steps before and after.
+  // coarsened() of the one before. `fine` must outlive the multigrid. smoother_degree: Chebyshev steps before and
+  // after.
   void set(const Lattice& lattice, const FaceBlocks<float>& fine, FaceField<float>&& transfer,
            const std::vector<StaggeredCoefficients<float>>& coarse, std::size_t count, int smoother_degree);
   // Approximate solution x of A x = b, zero where there is no unknown; valid until the next call.

@@ -76,8 +76,8 @@ TEST_F(FgmresTest, AnExactPreconditionerNeedsOneIterationForEachCycleOfSinglePre
 }
 
 TEST_F(FgmresTest, StaysOrthogonalInSinglePrecision) {
-  // Unrestarted, an iteration for each dimension is enough for a reduction that one cycle may reach; a basis that has lost
-  // its orthogonality stagnates.
+  // Unrestarted, an iteration for each dimension is enough for a reduction that one cycle may reach; a basis that has
+  // lost its orthogonality stagnates.
   std::vector<double> x(rhs.size(), 0.0);
   KrylovOptions options;
   options.absolute_tolerance = 1e-4 * residual(x);

@@ -160,7 +160,8 @@ double pressureFactor(int n, int fill) {
   double before = 0.0;
   for (int cycle = 0; cycle < 5; ++cycle) {
     project(l, faces, {still.data(), still.data() + l.size, still.data() + 2 * l.size}, x.data(), view(flow));
-    applyDivergence(l, cells, {flow.data(), flow.data() + l.size, flow.data() + 2 * l.size}, 1.0f, static_cast<const float*>(b.data()), r.data());
+    applyDivergence(l, cells, {flow.data(), flow.data() + l.size, flow.data() + 2 * l.size}, 1.0f,
+                    static_cast<const float*>(b.data()), r.data());
     if (cycle == 2) before = norm(r);
     const float* d = multigrid.cycle(r.data());
     for (std::size_t i = 0; i < l.size; ++i) x[i] += c.has_pressure[i] ? d[i] : 0.0f;

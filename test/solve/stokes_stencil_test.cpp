@@ -65,7 +65,9 @@ class StokesStencil : public testing::TestWithParam<Parameters> {
     return {f[0].data(), f[1].data(), f[2].data()};
   }
   static Faces<double> view(FaceField<double>& f) { return {f[0].data(), f[1].data(), f[2].data()}; }
-  FaceField<double> zero() const { return {std::vector<double>(l.size), std::vector<double>(l.size), std::vector<double>(l.size)}; }
+  FaceField<double> zero() const {
+    return {std::vector<double>(l.size), std::vector<double>(l.size), std::vector<double>(l.size)};
+  }
 
   // A U by the plain loops.
   FaceField<double> plainMomentum() const {
@@ -135,7 +137,9 @@ TEST_P(StokesStencil, SmootherDividesByTheSmoothingDiagonal) {
     for (float& v : b[a]) v = static_cast<float>(unit(random));
     for (float& v : d[a]) v = 1.0f;
   }
-  const auto constant = [](const FaceField<float>& f) { return Faces<const float>{f[0].data(), f[1].data(), f[2].data()}; };
+  const auto constant = [](const FaceField<float>& f) {
+    return Faces<const float>{f[0].data(), f[1].data(), f[2].data()};
+  };
   const auto mutableView = [](FaceField<float>& f) { return Faces<float>{f[0].data(), f[1].data(), f[2].data()}; };
   chebyshevStep(l, single, constant(x), constant(b), 0.5f, 0.25f, mutableView(d), mutableView(next));
   forEachCell([&](std::ptrdiff_t f) {
@@ -146,8 +150,7 @@ TEST_P(StokesStencil, SmootherDividesByTheSmoothingDiagonal) {
       EXPECT_NEAR(next[a][f], U[a][f] + step, 2e-6 * (1.0 + std::abs(AU[a][f])));
       const double tie = (effective[a][f] - c.mass[a][f]) / diagonal[a][f];
       EXPECT_NEAR(transfer[a][f], std::max(0.0, 1.0 - tie), 1e-6);
-      EXPECT_NEAR(conductance[a][f], c.open[a][f] * c.open[a][f] / effective[a][f],
-                  1e-6 * (1.0 + conductance[a][f]));
+      EXPECT_NEAR(conductance[a][f], c.open[a][f] * c.open[a][f] / effective[a][f], 1e-6 * (1.0 + conductance[a][f]));
     }
   });
 }
