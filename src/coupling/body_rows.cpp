@@ -14,9 +14,9 @@ void buildDivergenceRows(const MacGrid& grid, const SolidFractions& solids, cons
   const Lattice& l = grid.lattice;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const BodyFractions& f = solids.bodies[b];
-    for (int k = 0; k + 1 < f.count[2]; ++k) {
-      for (int j = 0; j + 1 < f.count[1]; ++j) {
-        for (int i = 0; i + 1 < f.count[0]; ++i) {
+    for (int k = 0; f.within(2, k + 1) >= 0 && k < f.count[2]; ++k) {
+      for (int j = 0; f.within(1, j + 1) >= 0 && j < f.count[1]; ++j) {
+        for (int i = 0; f.within(0, i + 1) >= 0 && i < f.count[0]; ++i) {
           int at[3] = {f.low[0] + i, f.low[1] + j, f.low[2] + k};
           int cell[3];
           bool outside = false;
@@ -29,7 +29,7 @@ void buildDivergenceRows(const MacGrid& grid, const SolidFractions& solids, cons
           Vector6d row = Vector6d::Zero();
           for (int a = 0; a < 3; ++a) {
             int next[3] = {i, j, k};
-            ++next[a];
+            next[a] = f.within(a, next[a] + 1);
             const double low = f.face[a][f.local(i, j, k)];
             const double high = f.face[a][f.local(next[0], next[1], next[2])];
             // The lever arm of both faces is the same about the axis that counts, so equal fractions cancel exactly.

@@ -2,23 +2,20 @@
 
 namespace monolith {
 
-Eigen::MatrixXd BodySchur::resistance(StepOperator& op, LiquidPreconditioner& preconditioner, const Lattice& lattice,
-                                      std::size_t body_count, const std::vector<int>& free) {
-  const auto n = static_cast<Eigen::Index>(6 * free.size());
-  Eigen::MatrixXd R = Eigen::MatrixXd::Zero(n, n);
+Eigen::MatrixXd BodySchur::resistance(const BodyColumns<float>& columns, LiquidPreconditioner& preconditioner,
+                                      std::size_t liquid) {
+  Eigen::MatrixXd R = columns.ownResistance();
+  const Eigen::Index n = R.cols();
   if (n == 0) return R;
-  StepVector x, y;
-  x.resize(lattice, body_count);
-  std::vector<Vector6d> forces(body_count);
+  std::vector<float> push(liquid), answer(liquid, 0.0f), motion(n, 0.0f);
   for (Eigen::Index column = 0; column < n; ++column) {
-    x.setZero();
-    x.bodies[free[column / 6]][column % 6] = -1.0;
-    op.apply(x, y);  // minus the column of the coupling blocks
-    preconditioner.apply(y, x);
+    std::fill(push.begin(), push.end(), 0.0f);
+    motion[column] = -1.0f;
+    columns.addMotion(motion.data(), push.data());
+    motion[column] = 0.0f;
+    preconditioner.apply(push.data(), 1.0f, answer.data());
     // The liquid's answer and the motion itself act on the bodies together.
-    op.bodyForces(x, forces);
-    for (std::size_t b = 0; b < free.size(); ++b) R.block<6, 1>(6 * b, column) = forces[free[b]] - y.bodies[free[b]];
-    x.bodies[free[column / 6]][column % 6] = 0.0;
+    R.col(column) += columns.forces(answer.data());
   }
   const Eigen::MatrixXd symmetric = 0.5 * (R + R.transpose());
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(symmetric);

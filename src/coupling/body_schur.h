@@ -4,18 +4,17 @@
 // Added mass and viscous resistance in one matrix; it steers the solve, and never decides its answer.
 
 #include <Eigen/Dense>
-#include <vector>
 
+#include "coupling/body_columns.h"
 #include "coupling/liquid_preconditioner.h"
-#include "coupling/step_operator.h"
 
 namespace monolith {
 
 class BodySchur {
  public:
-  // Columns for the bodies in `free`, in that order, in the units of StepVector.
-  static Eigen::MatrixXd resistance(StepOperator& op, LiquidPreconditioner& preconditioner, const Lattice& lattice,
-                                    std::size_t body_count, const std::vector<int>& free);
+  // In the units of the columns. liquid: number of packed liquid unknowns.
+  static Eigen::MatrixXd resistance(const BodyColumns<float>& columns, LiquidPreconditioner& preconditioner,
+                                    std::size_t liquid);
 };
 
 }  // namespace monolith

@@ -65,6 +65,9 @@ Nearest findNearest(const Lattice& l, const std::vector<std::uint8_t>& has_press
   return out;
 }
 
+// A belt opens nothing: what leaves on one side comes from the wall or body behind it on the other.
+bool runsInPlace(const RigidBody& body) { return body.motion == BodyMotion::kPrescribed && body.prescribed.in_place; }
+
 }  // namespace
 
 std::vector<EnclosedWeight> moveEnclosedRows(const MacGrid& grid, const SolidFractions& solids,
@@ -96,7 +99,7 @@ std::vector<EnclosedWeight> moveEnclosedRows(const MacGrid& grid, const SolidFra
     through = findNearest(l, coefficients.has_pressure, std::vector<char>(l.size, 1));
   }
   for (const BodyRow& row : rows.enclosed) {
-    if (!isBelowSurface(row)) continue;
+    if (!isBelowSurface(row) || runsInPlace(bodies[row.body])) continue;
     const Nearest& nearest = hasNoRim(row) ? through : along;
     const auto q = nearest.cell[row.sample];
     if (q < 0) continue;

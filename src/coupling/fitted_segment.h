@@ -3,6 +3,7 @@
 // component.
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "geometry/cube_fraction.h"
@@ -21,13 +22,22 @@ enum class FaceKind : std::uint8_t {
 inline bool isSolid(FaceKind kind) { return kind == FaceKind::kSliver || kind == FaceKind::kSolid; }
 
 struct FittedSegment {
-  bool defined = false;    // neither end in the air
+  bool defined = false;  // neither end in the air
   bool both_solid = false;
-  bool cut = false;        // by the surface of a solid
-  double theta = 1.0;      // part of the segment that lies in the liquid
+  bool cut = false;    // by the surface of a solid
+  double theta = 1.0;  // part of the segment that lies in the liquid
 };
 
-inline FittedSegment fitSegment(FaceKind kind_a, double distance_a, FaceKind kind_b, double distance_b) {
+// Where in (0, 1) the parabola is zero that is `fluid` > 0 at 0, `solid` < 0 at 1 and lies `sag` below their mean in
+// the middle. The distance of a convex solid sags: a straight line between its ends would find the surface too deep, by
+// up to h^2/8 times the curvature, and the solid too small.
+inline double surfaceCrossing(double fluid, double solid, double sag) {
+  const double b = fluid - solid + 4.0 * sag;
+  return 2.0 * fluid / (b + std::sqrt(b * b - 16.0 * sag * fluid));
+}
+
+// sag: by how much the distance half way lies below the mean of the ends'.
+inline FittedSegment fitSegment(FaceKind kind_a, double distance_a, FaceKind kind_b, double distance_b, double sag) {
   FittedSegment s;
   s.defined = kind_a != FaceKind::kAir && kind_b != FaceKind::kAir;
   const bool solid_a = isSolid(kind_a);
@@ -37,7 +47,11 @@ inline FittedSegment fitSegment(FaceKind kind_a, double distance_a, FaceKind kin
   if (solid_a != solid_b) {
     const double fluid = std::max(solid_a ? distance_b : distance_a, 0.0);
     const double solid = std::min(solid_a ? distance_a : distance_b, 0.0);
-    s.theta = fluid > solid ? std::clamp(fluid / (fluid - solid), kLeastTheta, 1.0) : kLeastTheta;
+    if (!(fluid > 0.0)) {
+      s.theta = kLeastTheta;
+    } else if (solid < 0.0) {
+      s.theta = std::clamp(surfaceCrossing(fluid, solid, sag), kLeastTheta, 1.0);
+    }
   }
   return s;
 }

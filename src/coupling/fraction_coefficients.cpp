@@ -68,9 +68,10 @@ class RowBuilder {
   }
 
  private:
-  double fraction(int a, const Cell& local) const {
+  double fraction(int a, Cell local) const {
     for (int d = 0; d < 3; ++d) {
-      if (local[d] < 0 || local[d] >= fractions_.count[d]) return 0.0;
+      local[d] = fractions_.within(d, local[d]);
+      if (local[d] < 0) return 0.0;
     }
     return fractions_.face[a][fractions_.local(local[0], local[1], local[2])];
   }

@@ -2,94 +2,108 @@
 
 #include <algorithm>
 
+#include "solve/blocked_sum.h"
+
 namespace monolith {
 namespace {
 
 // Below this the mass term dominates and one smoothing sweep on the level is a solve.
 constexpr double kLeastViscousNumber = 0.05;
+// Up to here the projection takes fewer iterations.
+constexpr double kLargestProjected = 20.0;
+// Beyond, more smoothing pays: fewer vectors to orthogonalise.
+constexpr int kSmootherDegree = 2;
+constexpr int kViscousSmootherDegree = 4;
 
-float removeMean(const std::vector<std::ptrdiff_t>& cells, std::vector<float>& field) {
-  double sum = 0.0;
-  for (const auto c : cells) sum += field[c];
-  const float mean = static_cast<float>(sum / static_cast<double>(cells.size()));
-  for (const auto c : cells) field[c] -= mean;
+float removeMean(const std::vector<std::ptrdiff_t>& cells, float* field) {
+  const auto size = static_cast<std::ptrdiff_t>(cells.size());
+  const double sum = blockedSum<double>(size, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    double part = 0.0;
+    for (auto i = begin; i < end; ++i) part += field[cells[i]];
+    return part;
+  });
+  const float mean = static_cast<float>(sum / static_cast<double>(size));
+#pragma omp parallel for schedule(static) if (cells.size() >= kSizeWorthSharing)
+  for (std::ptrdiff_t i = 0; i < size; ++i) field[cells[i]] -= mean;
   return mean;
 }
 
 }  // namespace
 
-void LiquidPreconditioner::set(std::vector<StaggeredCoefficients<float>>&& levels, double viscous_number,
-                               const std::vector<float>* cell_viscosity,
-                               const std::vector<PressureRegion>* regions) {
-  levels_ = std::move(levels);
-  viscous_number_ = static_cast<float>(viscous_number);
-  cell_viscosity_ = cell_viscosity;
-  regions_ = regions;
-  std::size_t velocity_levels = 1;
-  double number = viscous_number;
-  if (!cell_viscosity->empty()) number *= *std::max_element(cell_viscosity->begin(), cell_viscosity->end());
-  while (velocity_levels < levels_.size() && number > kLeastViscousNumber) {
-    ++velocity_levels;
+void LiquidPreconditioner::set(const StepProblem& problem, const FaceBlocks<float>& faces,
+                               const CellBlocks<float>& cells, FaceField<float>&& transfer,
+                               FaceField<float>&& conductance) {
+  problem_ = &problem;
+  faces_ = &faces;
+  cells_ = &cells;
+  const Lattice& l = problem.grid.lattice;
+  double number = problem.viscous_number;
+  if (!problem.cell_viscosity.empty()) {
+    number *= *std::max_element(problem.cell_viscosity.begin(), problem.cell_viscosity.end());
+  }
+  std::size_t levels = 1;
+  while (levels < problem.coarse.size() && number > kLeastViscousNumber) {
+    ++levels;
     number *= 0.25;
   }
-  if (viscous_number > 0.0) velocity_.setLevels(levels_, velocity_levels);
-  pressure_.set(levels_[0]);
+  if (problem.coefficients.viscous) {
+    velocity_.set(l, faces, std::move(transfer), problem.coarse, levels,
+                  problem.viscous_number > kLargestProjected ? kViscousSmootherDegree : kSmootherDegree);
+  }
+  pressure_.set(l, problem.coefficients.has_pressure, std::move(conductance));
+  g_.assign(l.size, 0.0f);
+  weight_.assign(l.size, 0.0f);
+  if (!problem.coefficients.viscous) return;
+  const auto& normal = problem.coefficients.normal;
+  forEachRow(l, [&](std::ptrdiff_t row, int, int) {
+    for (auto c = row; c < row + l.n[0]; ++c) {
+      const double ratio = problem.cell_viscosity.empty() ? 1.0 : problem.cell_viscosity[c];
+      const double mean = (normal[0][c] + normal[1][c] + normal[2][c]) / 3.0;
+      weight_[c] = static_cast<float>(std::min(mean, 2.0 * ratio * problem.viscous_number));
+    }
+  });
 }
 
-void LiquidPreconditioner::apply(const StepVector& r, StepVector& x) {
-  const StaggeredCoefficients<float>& c = levels_[0];
-  const Lattice& l = c.lattice;
-  for (int a = 0; a < 3; ++a) {
-    b_[a].resize(l.size);
-    u_[a].resize(l.size);
-#pragma omp parallel for simd schedule(static)
-    for (std::size_t i = 0; i < l.size; ++i) b_[a][i] = static_cast<float>(r.velocity[a][i]);
-  }
-  if (c.viscous) {
-    velocity_.cycle(b_, u_);
+void LiquidPreconditioner::apply(const float* r, float flux_scale, float* x) {
+  const Lattice& l = problem_->grid.lattice;
+  const auto size = static_cast<std::ptrdiff_t>(l.size);
+  const Faces<const float> b{r, r + size, r + 2 * size};
+  const Faces<float> out{x, x + size, x + 2 * size};
+  Faces<const float> u{x, x + size, x + 2 * size};
+  if (problem_->coefficients.viscous) {
+    u = velocity_.cycle(b);
   } else {
-    for (int a = 0; a < 3; ++a) {
-#pragma omp parallel for simd schedule(static)
-      for (std::size_t i = 0; i < l.size; ++i) u_[a][i] = c.mass[a][i] > 0.0f ? b_[a][i] / c.mass[a][i] : 0.0f;
-    }
+    // The diagonal is all there is.
+    chebyshevStart(*faces_, b, 1.0f, out, out);
+    for (float* field : out) fillHalo(l, field);
   }
-  g_.resize(l.size);
-  for (auto& field : u_) fillHalo(l, field);
-  computeDivergence(c, u_, g_);
-#pragma omp parallel for simd schedule(static)
-  for (std::size_t i = 0; i < l.size; ++i) {
-    g_[i] = c.has_pressure[i] ? -static_cast<float>(r.pressure[i]) - g_[i] : 0.0f;
-  }
+  applyDivergence(l, *cells_, u, -flux_scale, r + 3 * size, g_.data());
   std::vector<float> constants;
-  for (const PressureRegion& region : *regions_) {
-    if (region.sealed) constants.push_back(removeMean(region.cells, g_));
+  for (const PressureRegion& region : problem_->regions) {
+    if (region.sealed) constants.push_back(removeMean(region.cells, g_.data()));
   }
-  pressure_.cycle(g_, phi_);
+  float* phi = pressure_.cycle(g_.data());
   std::size_t sealed = 0;
-  for (const PressureRegion& region : *regions_) {
+  for (const PressureRegion& region : problem_->regions) {
     if (!region.sealed) continue;
-    removeMean(region.cells, phi_);
+    removeMean(region.cells, phi);
     // The constant of a pocket between free bodies is their doing alone; any positive scale lets the Krylov method find it.
     if (!region.null_mode) {
-      for (const auto cell : region.cells) phi_[cell] += constants[sealed];
+      for (const auto cell : region.cells) phi[cell] += constants[sealed];
     }
     ++sealed;
   }
-  fillHalo(l, phi_);
-  addPressureImpulse(c, pressure_.mass(), phi_, u_);
-  for (int a = 0; a < 3; ++a) {
-    clearHalo(l, u_[a]);
-#pragma omp parallel for simd schedule(static)
-    for (std::size_t i = 0; i < l.size; ++i) x.velocity[a][i] = u_[a][i];
+  if (sealed > 0) fillHalo(l, phi);
+  if (problem_->viscous_number <= kLargestProjected) {
+    project(l, *faces_, u, phi, out);
+  } else {
+    for (int a = 0; a < 3; ++a) std::copy_n(u[a], size, out[a]);
   }
-  clearHalo(l, phi_);
+  float* p = x + 3 * size;
+  const float *g = g_.data(), *weight = weight_.data();
 #pragma omp parallel for simd schedule(static)
-  for (std::size_t i = 0; i < l.size; ++i) x.pressure[i] = phi_[i] + 2.0f * viscous_number_ * g_[i];
-  if (cell_viscosity_->empty()) return;
-#pragma omp parallel for simd schedule(static)
-  for (std::size_t i = 0; i < l.size; ++i) {
-    x.pressure[i] = phi_[i] + 2.0f * viscous_number_ * (*cell_viscosity_)[i] * g_[i];
-  }
+  for (std::ptrdiff_t i = 0; i < size; ++i) p[i] = phi[i] + weight[i] * g[i];
+  for (float* field : {x, x + size, x + 2 * size, p}) fillHalo(l, field);
 }
 
 }  // namespace monolith

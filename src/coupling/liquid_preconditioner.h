@@ -1,10 +1,20 @@
 #pragma once
-// Projection preconditioner of the liquid's own block [A_uu, -C^T; -C, 0], in single precision.
+// Preconditioner of the liquid's own block [A, -C^T; -C, 0], in single precision. Linear: the same map on every call.
+//
+//   u* = A^-1 r_u                        one multigrid cycle
+//   g = -r_p - C u*
+//   p = L^-1 g + w g                     one multigrid cycle on L = C mass^-1 C^T; Cahouet & Chabard (1988)
+//   u = u* + mass^-1 C^T L^-1 g          where inertia counts: the projection method (Griffith 2009; Cai et al. 2014)
+//   u = u*                               where viscosity rules: block triangular
+//
+// w = 2 N times the part of the cell's normal stress that is in the liquid: next to a free surface the Schur complement is
+// as much softer. The projection is exact without viscosity; with much of it, it leaves strong stresses at boundaries,
+// and its iterations grow with N, while those of the triangular form do not.
 
 #include <vector>
 
 #include "coupling/pressure_regions.h"
-#include "coupling/step_operator.h"
+#include "coupling/step_problem.h"
 #include "solve/pressure_multigrid.h"
 #include "solve/velocity_multigrid.h"
 
@@ -12,24 +22,24 @@ namespace monolith {
 
 class LiquidPreconditioner {
  public:
-  // levels[0] is the finest. `regions` must outlive the preconditioner, and so must `cell_viscosity`, the factors of the
-  // viscous number in each cell; empty: one.
-  void set(std::vector<StaggeredCoefficients<float>>&& levels, double viscous_number,
-           const std::vector<float>* cell_viscosity, const std::vector<PressureRegion>* regions);
-  std::vector<StaggeredCoefficients<float>> takeLevels() { return std::move(levels_); }
+  // The problem and the compressed operator, with the fields that its construction gives besides, must outlive the
+  // preconditioner.
+  void set(const StepProblem& problem, const FaceBlocks<float>& faces, const CellBlocks<float>& cells,
+           FaceField<float>&& transfer, FaceField<float>&& conductance);
 
-  // x ~ the solution for right side r; the bodies' parts are neither read nor written.
-  void apply(const StepVector& r, StepVector& x);
+  // x ~ the solution for right side r, its flux times flux_scale: U by components, then p^, lattice.size each. Halos of x
+  // are filled, those of r not read.
+  void apply(const float* r, float flux_scale, float* x);
+
+  std::size_t bytes() const { return velocity_.bytes() + pressure_.bytes() + 2 * g_.size() * sizeof(float); }
 
  private:
-  std::vector<StaggeredCoefficients<float>> levels_;
-  float viscous_number_ = 0.0f;
-  const std::vector<float>* cell_viscosity_ = nullptr;
-  const std::vector<PressureRegion>* regions_ = nullptr;
+  const StepProblem* problem_ = nullptr;
+  const FaceBlocks<float>* faces_ = nullptr;
+  const CellBlocks<float>* cells_ = nullptr;
   VelocityMultigrid velocity_;
   PressureMultigrid pressure_;
-  FaceField<float> b_, u_;
-  std::vector<float> g_, phi_;
+  std::vector<float> g_, weight_;
 };
 
 }  // namespace monolith

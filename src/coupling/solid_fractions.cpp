@@ -13,6 +13,7 @@ constexpr double kLeastFluid = 1e-3;  // a face with less of it is closed: no ti
 // A face's centre nearer to a surface than this, in cell widths, lies on it: what is left of its share of liquid would
 // be the only way into the cell behind it, a pivot as small as round-off.
 constexpr double kOnSurface = 1e-3;
+constexpr double kUncut = 0.9;  // cell widths: a surface farther than half the diagonal from its centre does not cut a cell
 constexpr int kMargin = 2;  // cells around a body in which its distance is wanted
 
 int wrapped(int index, int n) { return ((index % n) + n) % n; }
@@ -106,10 +107,10 @@ void SolidSampler::sampleBody(const RigidBody& body, int index, SolidFractions& 
   const Eigen::AlignedBox3d box = body.distance->bounds().transformed(X_WB);
 
   BodyFractions& f = out.bodies[index];
-  bool endless[3] = {false, false, false};
   for (int a = 0; a < 3; ++a) {
     const double low = (box.min()[a] - grid_.origin[a]) / h;
     const double high = (box.max()[a] - grid_.origin[a]) / h;
+    f.endless[a] = false;
     int first = static_cast<int>(std::floor(std::clamp(low, -1e6, 1e6))) - kMargin;
     int last = static_cast<int>(std::floor(std::clamp(high, -1e6, 1e6))) + kMargin;
     if (!l.periodic[a]) {
@@ -119,7 +120,7 @@ void SolidSampler::sampleBody(const RigidBody& body, int index, SolidFractions& 
       // Longer than the tank's period: endless, and one period of it counts, far from where the shape ends.
       first += (last - first + 1 - l.n[a]) / 2;
       last = first + l.n[a] - 1;
-      endless[a] = true;
+      f.endless[a] = true;
     }
     f.low[a] = first;
     f.count[a] = std::max(0, last - first + 1);
@@ -158,7 +159,11 @@ void SolidSampler::sampleBody(const RigidBody& body, int index, SolidFractions& 
           distance[a][c] = std::abs(at_face) < kOnSurface ? 0.0F : static_cast<float>(at_face);
         }
         std::array<double, 8> octants;
-        octantFractions(*body.distance, x_B, R_WB, h, octants);
+        if (std::abs(d) > kUncut) {
+          octants.fill(d < 0.0 ? 1.0 : 0.0);
+        } else {
+          octantFractions(*body.distance, x_B, R_WB, h, octants);
+        }
         double cell = 0.0;
         std::array<double, 6> half{};
         for (int o = 0; o < 8; ++o) {
@@ -171,6 +176,10 @@ void SolidSampler::sampleBody(const RigidBody& body, int index, SolidFractions& 
     }
   }
 
+  // A box longer than a period holds cells of the grid twice.
+  bool once = true;
+  for (int a = 0; a < 3; ++a) once = once && (!l.periodic[a] || f.count[a] <= l.n[a]);
+#pragma omp parallel for schedule(static) if (once)
   for (int k = 0; k < f.count[2]; ++k) {
     for (int j = 0; j < f.count[1]; ++j) {
       for (int i = 0; i < f.count[0]; ++i) {
@@ -179,9 +188,9 @@ void SolidSampler::sampleBody(const RigidBody& body, int index, SolidFractions& 
         const std::array<int, 3> at = {i, j, k};
         for (int a = 0; a < 3; ++a) {
           double low_part = 0.0;
-          if (at[a] > 0 || endless[a]) {
-            std::array<int, 3> before = at;
-            before[a] = (at[a] > 0 ? at[a] : f.count[a]) - 1;
+          std::array<int, 3> before = at;
+          before[a] = f.within(a, at[a] - 1);
+          if (before[a] >= 0) {
             low_part = halves[f.local(before[0], before[1], before[2])][2 * a + 1];
           }
           f.face[a][c] = 0.5 * (low_part + halves[c][2 * a]);

@@ -30,10 +30,16 @@ struct WallPart {
 struct BodyFractions {
   std::array<int, 3> low{};    // first cell of the box; may lie in a periodic image
   std::array<int, 3> count{};  // cells along each axis
+  std::array<bool, 3> endless{};  // a periodic axis that the body spans: the box is one period and closes on itself
   FaceField<double> face;      // W_Si per axis, box-local index
   std::vector<double> cell;    // part of the cell
   std::vector<WallPart> at_walls;
 
+  // Place along an axis, which may be just outside the box; -1: there is nothing.
+  int within(int axis, int at) const {
+    if (endless[axis]) return (at + count[axis]) % count[axis];
+    return at < count[axis] ? at : -1;
+  }
   std::size_t local(int i, int j, int k) const {
     return static_cast<std::size_t>(i) +
            static_cast<std::size_t>(count[0]) * (static_cast<std::size_t>(j) + static_cast<std::size_t>(count[1]) * k);

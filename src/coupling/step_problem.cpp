@@ -81,7 +81,7 @@ void StepProblem::assembleFitted(SolidFractions& solids, const std::vector<doubl
       s.fraction *= liquidPart(liquid_distance[s.face - grid.lattice.stride[s.axis]], liquid_distance[s.face]);
     }
   }
-  const StokesGeometry geometry{&solids.fluid, &solids.distance, &liquid_distance};
+  const StokesGeometry geometry{&solids.fluid, &solids.distance, &liquid_distance, &solids.cell_distance};
   buildCoefficients(grid.lattice, geometry, viscous_number, coefficients, rates ? &strain : nullptr);
   buildBodyRows(grid, solids, *bodies, geometry, coefficients, rows);
   buildCoarseLevels(grid.lattice, geometry, viscous_number, coarse);

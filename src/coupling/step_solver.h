@@ -1,7 +1,7 @@
 #pragma once
 // What the solvers of a step have in common (DESIGN 2): `fast`, `direct` and `reference` answer the same two questions.
-// x holds the twists of all bodies; those that are not free are left alone and count as zero (their motion is in the right
-// side already).
+// x holds the twists of all bodies; those that are not free are left alone and count as zero (their motion is in the
+// right side already).
 
 #include <string>
 
@@ -20,11 +20,12 @@ struct CoupledReport {
   enum class Status { kNotRun, kConverged, kNotConverged, kInconsistent };
   Status status = Status::kNotRun;
   std::string message;
-  int iterations = 0;           // of the linear solver; `direct`: none
-  int solves = 0;               // with the whole liquid
-  int friction_iterations = 0;  // staggered projections, or rounds between pressure and contact
-  double residual = 0.0;        // relative, recomputed
-  double divergence = 0.0;      // 1/s, largest over cells with pressure
+  int iterations = 0;             // of the linear solver; `direct`: none
+  int solves = 0;                 // with the whole liquid
+  int friction_iterations = 0;    // staggered projections, or rounds between pressure and contact
+  double residual = 0.0;          // relative, recomputed
+  double contact_residual = 0.0;  // of Coulomb's law, relative to the speeds that contacts change
+  double divergence = 0.0;        // 1/s, largest over cells with pressure
 };
 
 class StepSolver {
@@ -34,20 +35,21 @@ class StepSolver {
   virtual void prepare(StepProblem& problem) = 0;
   // operator * x = rhs, without contact. x: guess on entry, solution if the report says so.
   [[nodiscard]] virtual CoupledReport solve(const StepVector& rhs, const CoupledOptions& options, StepVector& x) = 0;
-  // With contacts, unified: pressure, viscosity, bodies, non-penetration and friction. r: start on entry, impulses on return.
+  // With contacts, unified: pressure, viscosity, bodies, non-penetration and friction. r: start on entry, impulses on
+  // return.
   [[nodiscard]] virtual CoupledReport solveWithContacts(const StepVector& rhs, const ContactRows& contacts,
                                                         const CoupledOptions& options, StepVector& x,
                                                         Eigen::VectorXd& r) = 0;
 };
 
 // Compliance of contacts relative to that of their bodies: keeps redundant contacts (four corners of a box) solvable
-// and unique, at a speed far below any tolerance. The same for all contacts of a pair, so that every solver shares a load among
-// them in the same way.
+// and unique, at a speed far below any tolerance. The same for all contacts of a pair, so that every solver shares a
+// load among them in the same way.
 constexpr double kContactCompliance = 1e-9;
 void addCompliance(const ContactRows& contacts, Eigen::MatrixXd& response, Eigen::VectorXd& compliance);
 
-// J K J^T with that compliance added to its diagonal; `compliance` returns it. K: response of the twists of the free bodies to
-// impulses on them.
+// J K J^T with that compliance added to its diagonal; `compliance` returns it. K: response of the twists of the free
+// bodies to impulses on them.
 Eigen::MatrixXd contactResponse(const ContactRows& contacts, const Eigen::MatrixXd& K, Eigen::VectorXd& compliance);
 
 // Twists of the free bodies <-> one vector.

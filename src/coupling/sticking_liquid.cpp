@@ -31,6 +31,8 @@ void attachStickingLiquid(const MacGrid& grid, SolidFractions& solids, std::vect
     const auto& distance = solids.distance[a];
     const auto& owner = solids.owner[a];
     auto& fluid = solids.fluid[a];
+    std::vector<std::vector<StickingLiquid>> planes(l.faceEnd(2));
+#pragma omp parallel for schedule(dynamic)
     for (int k = 0; k < l.faceEnd(2); ++k) {
       for (int j = 0; j < l.faceEnd(1); ++j) {
         for (int i = 0; i < l.faceEnd(0); ++i) {
@@ -67,12 +69,13 @@ void attachStickingLiquid(const MacGrid& grid, SolidFractions& solids, std::vect
           int local[3];
           if (!localCell(l, fractions, cell, local)) continue;
           fractions.face[a][fractions.local(local[0], local[1], local[2])] += stuck;
-          out.push_back({a, f, body, stuck,
-                         grid.faceCenter(a, fractions.low[0] + local[0], fractions.low[1] + local[1],
-                                         fractions.low[2] + local[2])});
+          planes[k].push_back({a, f, body, stuck,
+                               grid.faceCenter(a, fractions.low[0] + local[0], fractions.low[1] + local[1],
+                                               fractions.low[2] + local[2])});
         }
       }
     }
+    for (const auto& plane : planes) out.insert(out.end(), plane.begin(), plane.end());
     fillHalo(l, fluid);
   }
 }

@@ -13,6 +13,17 @@ namespace {
 constexpr double kLeastLiquid = 1e-3;  // cell widths
 
 bool isWet(double distance) { return distance < -kLeastLiquid; }
+
+// liquidPart(), in one expression for the vector units.
+inline double partOfSegment(double distance_low, double distance_high) {
+  const double wet = std::min(distance_low, distance_high);
+  const double dry = std::max(distance_low, distance_high);
+  // A dry cell may lie just below the surface: the part is then just above one, and liquid at rest stays so.
+  const double part = std::min(std::max(wet / (wet - dry), kLeastLiquid), 1.0 + 2.0 * kLeastLiquid);
+  const double cut = wet < -kLeastLiquid ? part : 0.0;
+  return dry < -kLeastLiquid ? 1.0 : cut;
+}
+
 constexpr double kLeastSliver = 0.05;
 constexpr double kDistanceCap = 2.5;   // cell widths; the fine distances are right at least up to here
 
@@ -31,12 +42,26 @@ void closeHalo(const Lattice& l, int face_axis, std::vector<double>& distance) {
   fillHalo(l, distance);
 }
 
+// As out.resize(), but what buildCoefficients() writes anyway is not cleared first: it is most of the memory there is.
+void prepareToFill(const Lattice& l, bool viscous, StaggeredCoefficients<double>& out) {
+  const bool same = out.lattice.n == l.n && out.lattice.periodic == l.periodic && out.viscous == viscous &&
+                    out.has_pressure.size() == l.size;
+  if (!same) {
+    out.resize(l, viscous);
+    return;
+  }
+  for (auto& field : out.drag) {
+#pragma omp parallel for simd schedule(static)
+    for (std::size_t i = 0; i < field.size(); ++i) field[i] = 0.0;
+  }
+}
+
 // The viscous samples of one cell, whatever is around it.
 void buildSamples(const SampleBuilder& samples, double viscous_number, std::ptrdiff_t c,
                   StaggeredCoefficients<double>& out, StrainScales* strain) {
   const Lattice& l = samples.lattice;
   for (int a = 0; a < 3; ++a) {
-    const FittedSegment s = samples.segment(a, c, c + l.stride[a]);
+    const FittedSegment s = samples.segment(a, c, a);
     if (s.defined && !s.both_solid) {
       // eta |D_aa|^2: D^T D gives 2 N per unit weight; weight theta over theta^2.
       out.normal[a][c] = 2.0 * viscous_number * samples.liquidOfCell(c) / s.theta;
@@ -50,8 +75,8 @@ void buildSamples(const SampleBuilder& samples, double viscous_number, std::ptrd
   }
   for (int p = 0; p < 3; ++p) {
     const auto [a, b] = kShearPairs[p];
-    const FittedSegment s = samples.segment(a, c - l.stride[b], c);
-    const FittedSegment t = samples.segment(b, c - l.stride[a], c);
+    const FittedSegment s = samples.segment(a, c - l.stride[b], b);
+    const FittedSegment t = samples.segment(b, c - l.stride[a], a);
     if (!s.defined || !t.defined) continue;
     // eta 2 (1/2 (du + dv))^2, energy weight times N, its square root shared between the two differences.
     const auto& d = *samples.geometry.solid_distance;
@@ -63,7 +88,7 @@ void buildSamples(const SampleBuilder& samples, double viscous_number, std::ptrd
   }
 }
 
-// The same for the cells of a row that markPlain() found so; zero for the others.
+// The same for the cells of a row that markCells() found plain; zero for the others.
 void buildPlainRow(const SampleBuilder& samples, double viscous_number, std::ptrdiff_t row,
                    const std::vector<std::uint8_t>& mark, StaggeredCoefficients<double>& out) {
   const int width = static_cast<int>(mark.size());
@@ -75,7 +100,7 @@ void buildPlainRow(const SampleBuilder& samples, double viscous_number, std::ptr
   for (int a = 0; a < 3; ++a) normal[a] = out.normal[a].data() + row;
 #pragma omp simd
   for (int i = 0; i < width; ++i) {
-    const double value = m[i] == 0 ? number * part(d[i]) : 0.0;
+    const double value = m[i] == SampleBuilder::kPlain ? number * part(d[i]) : 0.0;
     normal[0][i] = value;
     normal[1][i] = value;
     normal[2][i] = value;
@@ -88,7 +113,7 @@ void buildPlainRow(const SampleBuilder& samples, double viscous_number, std::ptr
 #pragma omp simd
     for (int i = 0; i < width; ++i) {
       const double liquid = part(0.25 * (d[i] + d[i - sa] + d[i - sb] + d[i - sa - sb]));
-      const double weight = m[i] == 0 ? std::sqrt(viscous_number * liquid) : 0.0;
+      const double weight = m[i] == SampleBuilder::kPlain ? std::sqrt(viscous_number * liquid) : 0.0;
       first[i] = weight;
       second[i] = weight;
     }
@@ -106,16 +131,7 @@ std::vector<double> capped(const std::vector<double>& distance) {
 
 }  // namespace
 
-double liquidPart(double distance_low, double distance_high) {
-  const bool low = isWet(distance_low);
-  const bool high = isWet(distance_high);
-  if (low && high) return 1.0;
-  if (!low && !high) return 0.0;
-  const double wet = low ? distance_low : distance_high;
-  const double dry = low ? distance_high : distance_low;
-  // A dry cell may lie just below the surface: the part is then just above one, and liquid at rest stays so.
-  return std::clamp(wet / (wet - dry), kLeastLiquid, 1.0 + 2.0 * kLeastLiquid);
-}
+double liquidPart(double distance_low, double distance_high) { return partOfSegment(distance_low, distance_high); }
 
 void StrainScales::resize(const Lattice& l) {
   for (auto* fields : {&normal, &shear, &drag}) {
@@ -131,17 +147,17 @@ void StrainScales::fillHalos(const Lattice& l) {
 
 void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double viscous_number,
                        StaggeredCoefficients<double>& out, StrainScales* strain) {
-  out.resize(l, viscous_number > 0.0);
+  prepareToFill(l, viscous_number > 0.0, out);
   const auto& liquid = *geometry.liquid_distance;
   const int width = l.faceEnd(0);
   forEachRow(l, [&](std::ptrdiff_t row, int, int) {
-    for (auto f = row; f < row + width; ++f) {
-      for (int a = 0; a < 3; ++a) {
-        const double open = (*geometry.fluid)[a][f];
-        const double mass = open * liquidPart(liquid[f - l.stride[a]], liquid[f]);
-        if (!(mass > 0.0)) continue;
-        out.mass[a][f] = mass;
-        out.open[a][f] = open;
+    for (int a = 0; a < 3; ++a) {
+      const double* fluid = (*geometry.fluid)[a].data();
+      for (auto f = row; f < row + width; ++f) {
+        const double mass = fluid[f] * partOfSegment(liquid[f - l.stride[a]], liquid[f]);
+        const bool moves = mass > 0.0;
+        out.mass[a][f] = moves ? mass : 0.0;
+        out.open[a][f] = moves ? fluid[f] : 0.0;
       }
     }
   });
@@ -153,10 +169,9 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
   forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
     if (j >= end[1] || k >= end[2]) return;
     for (auto c = row; c < row + end[0]; ++c) {
-      if (!isWet(liquid[c])) continue;
       double sum = 0.0;
       for (int a = 0; a < 3; ++a) sum += out.open[a][c] + out.open[a][c + l.stride[a]];
-      out.has_pressure[c] = sum > 0.0;
+      out.has_pressure[c] = isWet(liquid[c]) & (sum > 0.0);
     }
   });
   if (!out.viscous) return;
@@ -165,10 +180,10 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
   const SampleBuilder samples(l, geometry, out);
   forEachRow(l, [&](std::ptrdiff_t row, int, int) {
     thread_local std::vector<std::uint8_t> mark;
-    samples.markPlain(row, width, mark);
+    samples.markCells(row, width, mark);
     buildPlainRow(samples, viscous_number, row, mark, out);
     for (int i = 0; i < width; ++i) {
-      if (mark[i] == 0 && strain == nullptr) continue;
+      if (mark[i] == SampleBuilder::kAllAir || (mark[i] == SampleBuilder::kPlain && strain == nullptr)) continue;
       buildSamples(samples, viscous_number, row + i, out, strain);
     }
   });

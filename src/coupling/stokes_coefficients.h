@@ -35,6 +35,8 @@ struct StokesGeometry {
   const FaceField<double>* fluid = nullptr;           // W_F
   const FaceField<double>* solid_distance = nullptr;  // cell widths
   const std::vector<double>* liquid_distance = nullptr;  // cell widths, negative in liquid, at cell centres, halo filled
+  // Solids' distance at cell centres, halo filled: with it segments find curved surfaces where they are; may be missing.
+  const std::vector<double>* solid_cell_distance = nullptr;
 };
 
 // From what the operator computes at a sample to its rate, in 1/s times the cell width, where the viscosity is the one that the

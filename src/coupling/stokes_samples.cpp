@@ -21,20 +21,27 @@ FaceKinds findFaceKinds(const Lattice& l, const StokesGeometry& g, const Stagger
   return kinds;
 }
 
-void SampleBuilder::markPlain(std::ptrdiff_t row, int width, std::vector<std::uint8_t>& mark) const {
-  mark.assign(width, 0);
-  std::uint8_t* out = mark.data();
+void SampleBuilder::markCells(std::ptrdiff_t row, int width, std::vector<std::uint8_t>& mark) const {
+  static_assert(static_cast<int>(FaceKind::kFluid) == 0, "plain cells are those whose kinds are all zero");
+  constexpr auto kAir = static_cast<std::uint8_t>(FaceKind::kAir);
+  mark.assign(2 * width, 0);
+  std::uint8_t* unlike_fluid = mark.data();
+  std::uint8_t* unlike_air = mark.data() + width;
   for (int a = 0; a < 3; ++a) {
-    const FaceKind* kind = kinds_[a].data() + row;
+    const auto* kind = reinterpret_cast<const std::uint8_t*>(kinds_[a].data()) + row;
     const auto s = lattice.stride[a];
     const auto sb = lattice.stride[(a + 1) % 3];
     const auto sc = lattice.stride[(a + 2) % 3];
 #pragma omp simd
     for (int i = 0; i < width; ++i) {
-      out[i] |= static_cast<std::uint8_t>(kind[i]) | static_cast<std::uint8_t>(kind[i + s]) |
-                static_cast<std::uint8_t>(kind[i - sb]) | static_cast<std::uint8_t>(kind[i - sc]);
+      unlike_fluid[i] |= kind[i] | kind[i + s] | kind[i - sb] | kind[i - sc];
+      unlike_air[i] |= (kind[i] ^ kAir) | (kind[i + s] ^ kAir) | (kind[i - sb] ^ kAir) | (kind[i - sc] ^ kAir);
     }
   }
+  for (int i = 0; i < width; ++i) {
+    mark[i] = unlike_fluid[i] == 0 ? kPlain : unlike_air[i] == 0 ? kAllAir : kMixed;
+  }
+  mark.resize(width);
 }
 
 }  // namespace monolith

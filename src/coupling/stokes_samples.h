@@ -1,5 +1,6 @@
 #pragma once
-// What the viscous samples of a grid are made of: the kinds of all faces, found once for each, and the segments between them.
+// What the viscous samples of a grid are made of: the kinds of all faces, found once for each, and the segments between
+// them.
 
 #include <algorithm>
 #include <array>
@@ -25,9 +26,13 @@ class SampleBuilder {
       : lattice(l), geometry(g), kinds_(findFaceKinds(l, g, c)) {}
 
   FaceKind kind(int axis, std::ptrdiff_t f) const { return kinds_[axis][f]; }
-  FittedSegment segment(int axis, std::ptrdiff_t a, std::ptrdiff_t b) const {
+  // Of component `axis`, from face a to the next along `along`.
+  FittedSegment segment(int axis, std::ptrdiff_t a, int along) const {
+    const auto b = a + lattice.stride[along];
     const auto& distance = (*geometry.solid_distance)[axis];
-    return fitSegment(kind(axis, a), distance[a], kind(axis, b), distance[b]);
+    const FaceKind kind_a = kind(axis, a), kind_b = kind(axis, b);
+    const bool cut = isSolid(kind_a) != isSolid(kind_b);
+    return fitSegment(kind_a, distance[a], kind_b, distance[b], cut ? sag(axis, a, along) : 0.0);
   }
   double liquidOfCell(std::ptrdiff_t c) const { return liquidOfCube((*geometry.liquid_distance)[c]); }
   double liquidOfEdge(std::ptrdiff_t c, int a, int b) const {
@@ -36,14 +41,30 @@ class SampleBuilder {
     const auto sb = lattice.stride[b];
     return liquidOfCube(0.25 * (d[c] + d[c - sa] + d[c - sb] + d[c - sa - sb]));
   }
-  // Of a row of cells, whether the samples of each are plain: 0 if all faces that they join are in the liquid, far from
-  // any surface of a solid.
-  void markPlain(std::ptrdiff_t row, int width, std::vector<std::uint8_t>& mark) const;
+  // What a row of cells is like: plain if all faces that the samples of a cell join are in the liquid, far from any
+  // surface of a solid; air if all are in the air, where there are no samples.
+  enum Mark : std::uint8_t { kPlain, kMixed, kAllAir };
+  void markCells(std::ptrdiff_t row, int width, std::vector<std::uint8_t>& mark) const;
 
   const Lattice& lattice;
   const StokesGeometry& geometry;
 
  private:
+  // By how much the solids' distance half way along a segment lies below the mean of its ends'.
+  double sag(int axis, std::ptrdiff_t a, int along) const {
+    if (geometry.solid_cell_distance == nullptr) return 0.0;
+    const auto& cell = *geometry.solid_cell_distance;
+    const auto& distance = *geometry.solid_distance;
+    const auto b = a + lattice.stride[along];
+    const double mean = 0.5 * (distance[axis][a] + distance[axis][b]);
+    if (axis == along) return mean - cell[a];
+    // Half way is an edge. The faces of the other component there, minus the cells around: what is left of the second
+    // derivatives is that of the segment itself.
+    const auto low = b - lattice.stride[axis];
+    return 0.25 * (cell[a] + cell[b] + cell[low] + cell[low - lattice.stride[along]]) -
+           0.5 * (distance[along][low] + distance[along][b]);
+  }
+
   FaceKinds kinds_;
 };
 

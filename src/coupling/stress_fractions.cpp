@@ -68,8 +68,8 @@ void sampleBody(const MacGrid& grid, const RigidBody& body, const BodyFractions&
       double sum = 0.0;
       for (int quarter = 0; quarter < 4; ++quarter) {
         Cell from = local;
-        from[a] -= quarter & 1;
-        from[b] -= quarter >> 1;
+        from[a] = box.within(a, from[a] - (quarter & 1));
+        from[b] = box.within(b, from[b] - (quarter >> 1));
         if (from[a] < 0 || from[b] < 0) continue;
         const Octants& parts = octants[box.local(from[0], from[1], from[2])];
         // The octants of that cell which touch the edge: high ones of the cells below it.

@@ -8,19 +8,20 @@ namespace {
 // Collects the rows of the bodies sample by sample.
 class RowBuilder {
  public:
-  RowBuilder(const SampleBuilder& samples, const SolidFractions& solids, const std::vector<RigidBody>& bodies, double h)
-      : samples_(samples), solids_(solids), bodies_(bodies), h_(h) {}
+  RowBuilder(const SampleBuilder& samples, const SolidFractions& solids, const std::vector<RigidBody>& bodies,
+             const MacGrid& grid)
+      : samples_(samples), solids_(solids), bodies_(bodies), grid_(grid) {}
 
   // The solid ends of a segment of component `axis` from face a at x_a to face b at x_b = x_a + h along `along`, as
   // they enter factor * (U_b - U_a).
   void addSegment(int axis, std::ptrdiff_t a, std::ptrdiff_t b, const Eigen::Vector3d& x_a, int along, double factor,
                   const FittedSegment& s, std::ptrdiff_t sample, std::vector<BodyRow>& out) const {
     Eigen::Vector3d x_b = x_a;
-    x_b[along] += h_;
+    x_b[along] += grid_.h;
     const bool solid_a = isSolid(samples_.kind(axis, a));
     const bool solid_b = isSolid(samples_.kind(axis, b));
     Eigen::Vector3d surface = x_a;
-    if (!s.both_solid) surface[along] += (solid_a ? 1.0 - s.theta : s.theta) * h_;
+    if (!s.both_solid) surface[along] += (solid_a ? 1.0 - s.theta : s.theta) * grid_.h;
     if (solid_a) addEnd(axis, a, x_a, s.both_solid ? x_a : surface, -factor, sample, out);
     if (solid_b) addEnd(axis, b, x_b, s.both_solid ? x_b : surface, factor, sample, out);
   }
@@ -31,8 +32,10 @@ class RowBuilder {
               std::ptrdiff_t sample, std::vector<BodyRow>& out) const {
     const int owner = solids_.owner[axis][f];
     if (owner < 0) return;
-    Vector6d row = velocityRow(axis, target, bodies_[owner].p_WBcm);
-    if (samples_.kind(axis, f) == FaceKind::kSliver) row -= velocityRow(axis, x_face, bodies_[owner].p_WBcm);
+    const Eigen::Vector3d& p_WBcm = bodies_[owner].p_WBcm;
+    const Eigen::Vector3d shift = grid_.toNearestImage(x_face, p_WBcm);
+    Vector6d row = velocityRow(axis, target + shift, p_WBcm);
+    if (samples_.kind(axis, f) == FaceKind::kSliver) row -= velocityRow(axis, x_face + shift, p_WBcm);
     if (row.cwiseAbs().maxCoeff() == 0.0) return;
     out.push_back({sample, owner, factor * row});
   }
@@ -40,7 +43,7 @@ class RowBuilder {
   const SampleBuilder& samples_;
   const SolidFractions& solids_;
   const std::vector<RigidBody>& bodies_;
-  double h_;
+  const MacGrid& grid_;
 };
 
 // Cells, and those beyond the last ones, from which the samples reach into the box of a body.
@@ -77,12 +80,13 @@ void buildBodyRows(const MacGrid& grid, const SolidFractions& solids, const std:
 
   // J_s: every sample with an end in a body.
   const SampleBuilder samples(l, geometry, coefficients);
-  const RowBuilder rows(samples, solids, bodies, h);
+  const RowBuilder rows(samples, solids, bodies, grid);
   const int end_j = l.faceEnd(1);
   const int end_k = l.faceEnd(2);
   std::vector<BodyRows> slabs(end_k);
   const std::vector<char> near = nearBodies(l, solids);
-#pragma omp parallel for schedule(static)
+  // Bodies may lie together in a few slabs.
+#pragma omp parallel for schedule(dynamic)
   for (int k = 0; k < end_k; ++k) {
     BodyRows& slab = slabs[k];
     for (int j = 0; j < end_j; ++j) {
@@ -93,12 +97,14 @@ void buildBodyRows(const MacGrid& grid, const SolidFractions& solids, const std:
         for (int a = 0; a < 3; ++a) {
           const auto sa = l.stride[a];
           if (coefficients.normal[a][c] > 0.0) {
-            const FittedSegment s = samples.segment(a, c, c + sa);
+            const FittedSegment s = samples.segment(a, c, a);
             rows.addSegment(a, c, c + sa, grid.faceCenter(a, i, j, k), a, 1.0, s, c, slab.normal[a]);
           }
           if (coefficients.drag[a][c] > 0.0 && solids.owner[a][c] >= 0) {
             const int owner = solids.owner[a][c];
-            slab.drag[a].push_back({c, owner, velocityRow(a, grid.faceCenter(a, i, j, k), bodies[owner].p_WBcm)});
+            const Eigen::Vector3d& p_WBcm = bodies[owner].p_WBcm;
+            const Eigen::Vector3d x = grid.faceCenter(a, i, j, k);
+            slab.drag[a].push_back({c, owner, velocityRow(a, x + grid.toNearestImage(x, p_WBcm), p_WBcm)});
           }
         }
         for (int p = 0; p < 3; ++p) {
@@ -112,8 +118,8 @@ void buildBodyRows(const MacGrid& grid, const SolidFractions& solids, const std:
           x_a[b] -= h;
           Eigen::Vector3d x_b = grid.faceCenter(b, i, j, k);
           x_b[a] -= h;
-          rows.addSegment(a, c - sb, c, x_a, b, factor_a, samples.segment(a, c - sb, c), c, slab.shear[p]);
-          rows.addSegment(b, c - sa, c, x_b, a, factor_b, samples.segment(b, c - sa, c), c, slab.shear[p]);
+          rows.addSegment(a, c - sb, c, x_a, b, factor_a, samples.segment(a, c - sb, b), c, slab.shear[p]);
+          rows.addSegment(b, c - sa, c, x_b, a, factor_b, samples.segment(b, c - sa, a), c, slab.shear[p]);
         }
       }
     }

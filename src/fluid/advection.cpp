@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fluid/interpolation.h"
+#include "fluid/row_advection.h"
 
 namespace monolith {
 namespace {
@@ -65,6 +66,88 @@ inline Eigen::Vector3d velocityAtCell(const Lattice& l, const FaceField<double>&
   Eigen::Vector3d v;
   for (int b = 0; b < 3; ++b) v[b] = 0.5 * (velocity[b][c] + velocity[b][c + l.stride[b]]);
   return v;
+}
+
+// The planes in turn to each thread: liquid may fill only the lowest.
+template <class RowFunction>
+void forEachRowInTurn(int end_j, int end_k, RowFunction&& f) {
+#pragma omp parallel for schedule(static, 1)
+  for (int k = 0; k < end_k; ++k) {
+    for (int j = 0; j < end_j; ++j) f(j, k);
+  }
+}
+
+// One row of `count` fields, four entries at a time where their stencils cannot leave the field: those that are wanted.
+// one(i) -> its values; four(i, fours) -> whether it could.
+template <std::size_t count, class Wanted, class One, class FourFunction>
+void advectRow(const Lattice& l, int j, int k, int end, Wanted&& wanted, One&& one, FourFunction&& four,
+               const std::array<double*, count>& out) {
+  constexpr int kFour = 4;
+  const auto oneByOne = [&](int begin, int stop) {
+    for (int i = begin; i < stop; ++i) {
+      if (!wanted(i)) continue;
+      const std::array<double, count> values = one(i);
+      for (std::size_t n = 0; n < count; ++n) out[n][i] = values[n];
+    }
+  };
+  if (j >= l.n[1] || k >= l.n[2] || l.n[0] < kFour) {
+    oneByOne(0, end);
+    return;
+  }
+  for (int i = 0; i < l.n[0]; i += kFour) {
+    const int first = std::min(i, l.n[0] - kFour);  // the last four overlap those before
+    if (!(wanted(first) || wanted(first + 1) || wanted(first + 2) || wanted(first + 3))) continue;
+    std::array<Four, count> values;
+    if (!four(first, values)) {
+      oneByOne(i, std::min(i + kFour, l.n[0]));
+      continue;
+    }
+    for (int q = i - first; q < kFour; ++q) {
+      if (!wanted(first + q)) continue;
+      for (std::size_t n = 0; n < count; ++n) out[n][first + q] = values[n][q];
+    }
+  }
+  oneByOne(l.n[0], end);
+}
+
+// Values of `count` fields at the known faces of an axis, as advectRow(); faces in a wall keep those of `from`.
+template <std::size_t count, class One, class FourFunction>
+void advectFaces(const Lattice& l, int axis, const std::vector<std::uint8_t>& known, One&& one, FourFunction&& four,
+                 const std::array<const std::vector<double>*, count>& from,
+                 const std::array<std::vector<double>*, count>& to) {
+  for (auto* field : to) field->assign(l.size, 0.0);
+  forEachRowInTurn(l.faceEnd(1), l.faceEnd(2), [&](int j, int k) {
+    const auto row = l.index(0, j, k);
+    const std::uint8_t* mask = known.data() + row;
+    const int at[3] = {0, j, k};
+    const auto isWall = [&](int i) {
+      const int along = axis == 0 ? i : at[axis];
+      return !l.periodic[axis] && (along == 0 || along == l.n[axis]);
+    };
+    const auto keep = [&](int i) {
+      if (!mask[i]) return;
+      for (std::size_t n = 0; n < count; ++n) (*to[n])[row + i] = (*from[n])[row + i];
+    };
+    if (axis != 0 && isWall(0)) {
+      for (int i = 0; i < l.faceEnd(0); ++i) keep(i);
+      return;
+    }
+    std::array<double*, count> out;
+    for (std::size_t n = 0; n < count; ++n) out[n] = to[n]->data() + row;
+    advectRow<count>(
+        l, j, k, l.faceEnd(0), [&](int i) { return mask[i] != 0 && !(axis == 0 && isWall(i)); },
+        [&](int i) {
+          return one(std::array<int, 3>{i, j, k});
+        },
+        [&](int i, std::array<Four, count>& values) {
+          return four(std::array<int, 3>{i, j, k}, values);
+        },
+        out);
+    if (axis != 0) return;
+    for (const int i : {0, l.n[0]}) {
+      if (isWall(i)) keep(i);
+    }
+  });
 }
 
 }  // namespace
@@ -130,22 +213,34 @@ void extrapolateVelocity(const Lattice& l, int layers, bool no_slip, std::array<
   }
 }
 
+double advectFace(const Lattice& l, const FaceField<double>& velocity, int axis, const std::array<int, 3>& face,
+                  double scale) {
+  const Eigen::Vector3d offset = nodeOffset(axis);
+  const Eigen::Vector3d x = Eigen::Vector3d(face[0], face[1], face[2]) + offset;
+  const Eigen::Vector3d v = velocityAtFace(l, velocity, axis, l.index(face[0], face[1], face[2]));
+  return sampleCubic(l, velocity[axis], traceBack(l, velocity, x, v, scale) - offset, true);
+}
+
+double advectCell(const Lattice& l, const FaceField<double>& velocity, const std::vector<double>& field,
+                  const std::array<int, 3>& cell, double scale) {
+  const Eigen::Vector3d offset = nodeOffset(-1);
+  const Eigen::Vector3d x = Eigen::Vector3d(cell[0], cell[1], cell[2]) + offset;
+  const Eigen::Vector3d v = velocityAtCell(l, velocity, l.index(cell[0], cell[1], cell[2]));
+  return sampleCubic(l, field, traceBack(l, velocity, x, v, scale) - offset, false);
+}
+
 void advectVelocity(const MacGrid& grid, const FaceField<double>& velocity,
                     const std::array<std::vector<std::uint8_t>, 3>& known, double dt, FaceField<double>& moved) {
   const Lattice& l = grid.lattice;
   const double scale = dt / grid.h;
   for (int a = 0; a < 3; ++a) {
-    moved[a].assign(l.size, 0.0);
-    const Eigen::Vector3d offset = nodeOffset(a);
-    forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
-      for (int i = 0; i < l.faceEnd(0); ++i) {
-        if (!known[a][row + i]) continue;
-        const Eigen::Vector3d x = Eigen::Vector3d(i, j, k) + offset;
-        const Eigen::Vector3d v = velocityAtFace(l, velocity, a, row + i);
-        const Eigen::Vector3d foot = traceBack(l, velocity, x, v, scale);
-        moved[a][row + i] = sampleCubic(l, velocity[a], foot - offset, true);
-      }
-    });
+    advectFaces<1>(
+        l, a, known[a],
+        [&](const std::array<int, 3>& face) { return std::array<double, 1>{advectFace(l, velocity, a, face, scale)}; },
+        [&](const std::array<int, 3>& first, std::array<Four, 1>& values) {
+          return advectFour(l, velocity, a, first, scale, values[0]);
+        },
+        {&velocity[a]}, {&moved[a]});
   }
 }
 
@@ -153,47 +248,47 @@ void advectAccelerated(const MacGrid& grid, const FaceField<double>& velocity, c
                        const std::array<std::vector<std::uint8_t>, 3>& known, double dt, FaceField<double>& moved,
                        FaceField<double>& gained) {
   const Lattice& l = grid.lattice;
-  FaceField<double> mean = velocity;
+  FaceField<double> mean;
   for (int a = 0; a < 3; ++a) {
-    for (std::size_t i = 0; i < l.size; ++i) mean[a][i] += 0.5 * dt * acceleration[a][i];
+    mean[a].resize(l.size);
+#pragma omp parallel for simd schedule(static)
+    for (std::size_t i = 0; i < l.size; ++i) mean[a][i] = velocity[a][i] + 0.5 * dt * acceleration[a][i];
   }
   const double scale = dt / grid.h;
   for (int a = 0; a < 3; ++a) {
-    moved[a].assign(l.size, 0.0);
-    gained[a].assign(l.size, 0.0);
     const Eigen::Vector3d offset = nodeOffset(a);
-    forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
-      for (int i = 0; i < l.faceEnd(0); ++i) {
-        if (!known[a][row + i]) continue;
-        const Eigen::Vector3d x = Eigen::Vector3d(i, j, k) + offset;
-        const Eigen::Vector3d near = x - scale * velocityAtFace(l, mean, a, row + i);
-        const Eigen::Vector3d node = x - scale * velocityAt(l, mean, near) - offset;
-        moved[a][row + i] = sampleCubic(l, velocity[a], node, true);
-        gained[a][row + i] = sampleLinear(l, acceleration[a], node);
-      }
-    });
+    advectFaces<2>(
+        l, a, known[a],
+        [&](const std::array<int, 3>& face) {
+          const Eigen::Vector3d x = Eigen::Vector3d(face[0], face[1], face[2]) + offset;
+          const Eigen::Vector3d near = x - scale * velocityAtFace(l, mean, a, l.index(face[0], face[1], face[2]));
+          const Eigen::Vector3d foot = x - scale * velocityAt(l, mean, near) - offset;
+          return std::array<double, 2>{sampleCubic(l, velocity[a], foot, true), sampleLinear(l, acceleration[a], foot)};
+        },
+        [&](const std::array<int, 3>& first, std::array<Four, 2>& values) {
+          return advectFourAccelerated(l, mean, velocity[a], acceleration[a], a, first, scale, values[0], values[1]);
+        },
+        {&velocity[a], &acceleration[a]}, {&moved[a], &gained[a]});
   }
 }
 
 void advectCells(const MacGrid& grid, const FaceField<double>& velocity, const std::vector<double>& field, double dt,
-                 std::vector<double>& moved, double band) {
+                 std::vector<double>& moved) {
   const Lattice& l = grid.lattice;
   const double scale = dt / grid.h;
   moved = field;
-  const Eigen::Vector3d offset = nodeOffset(-1);
-#pragma omp parallel for schedule(static)
-  for (int k = 0; k < l.n[2]; ++k) {
-    for (int j = 0; j < l.n[1]; ++j) {
-      for (int i = 0; i < l.n[0]; ++i) {
-        const auto c = l.index(i, j, k);
-        if (std::abs(field[c]) > band) continue;
-        const Eigen::Vector3d x = Eigen::Vector3d(i, j, k) + offset;
-        const Eigen::Vector3d v = velocityAtCell(l, velocity, c);
-        const Eigen::Vector3d foot = traceBack(l, velocity, x, v, scale);
-        moved[c] = sampleCubic(l, field, foot - offset, false);
-      }
-    }
-  }
+  forEachRowInTurn(l.n[1], l.n[2], [&](int j, int k) {
+    const auto row = l.index(0, j, k);
+    advectRow<1>(
+        l, j, k, l.n[0], [](int) { return true; },
+        [&](int i) {
+          return std::array<double, 1>{advectCell(l, velocity, field, {i, j, k}, scale)};
+        },
+        [&](int i, std::array<Four, 1>& values) {
+          return advectFourCells(l, velocity, field, {i, j, k}, scale, values[0]);
+        },
+        {moved.data() + row});
+  });
 }
 
 }  // namespace monolith

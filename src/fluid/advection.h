@@ -2,8 +2,8 @@
 // Transport by the liquid's own velocity: semi-Lagrangian (Robert 1981), traced back by the midpoint rule, tricubic
 // at the foot. Stable at any CFL number.
 
+#include <array>
 #include <cstdint>
-#include <limits>
 
 #include "fluid/mac_grid.h"
 #include "solve/staggered_operator.h"
@@ -16,7 +16,15 @@ namespace monolith {
 void extrapolateVelocity(const Lattice& lattice, int layers, bool no_slip,
                          std::array<std::vector<std::uint8_t>, 3>& known, FaceField<double>& velocity);
 
-// The velocity field moved by itself over dt, on faces that are known; zero elsewhere. Halos must be filled.
+// The velocity at the foot of the trajectory that arrives at a face; scale: dt/h. Halos must be filled.
+double advectFace(const Lattice& lattice, const FaceField<double>& velocity, int axis, const std::array<int, 3>& face,
+                  double scale);
+
+// Likewise a cell-centred field at a cell.
+double advectCell(const Lattice& lattice, const FaceField<double>& velocity, const std::vector<double>& field,
+                  const std::array<int, 3>& cell, double scale);
+
+// The velocity field moved by itself over dt, on faces that are known, those in walls excepted; zero elsewhere. Halos must be filled.
 void advectVelocity(const MacGrid& grid, const FaceField<double>& velocity,
                     const std::array<std::vector<std::uint8_t>, 3>& known, double dt, FaceField<double>& moved);
 
@@ -26,10 +34,9 @@ void advectAccelerated(const MacGrid& grid, const FaceField<double>& velocity, c
                        const std::array<std::vector<std::uint8_t>, 3>& known, double dt, FaceField<double>& moved,
                        FaceField<double>& gained);
 
-// A cell-centred field moved by the velocity over dt. Halos must be filled. Cells whose value is larger than `band` in
-// size keep it.
+// A cell-centred field moved by the velocity over dt. Halos must be filled.
 void advectCells(const MacGrid& grid, const FaceField<double>& velocity, const std::vector<double>& field, double dt,
-                 std::vector<double>& moved, double band = std::numeric_limits<double>::infinity());
+                 std::vector<double>& moved);
 
 // Velocity at a point, position in cell widths from the tank's corner.
 Eigen::Vector3d velocityAt(const Lattice& lattice, const FaceField<double>& velocity, const Eigen::Vector3d& position);

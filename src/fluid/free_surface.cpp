@@ -78,7 +78,7 @@ FreeSurface::FreeSurface(const MacGrid& grid, double fill_height, const std::vec
 
 void FreeSurface::advect(const FaceField<double>& velocity, double dt, double maximum_speed) {
   if (full_ || empty_ || maximum_speed == 0.0) return;
-  advectCells(grid_, velocity, distance_, dt, scratch_, kBand);
+  advectCells(grid_, velocity, distance_, dt, scratch_);
   distance_.swap(scratch_);
   extendIntoHalo(grid_.lattice, distance_);
   travelled_ += maximum_speed * dt / grid_.h;

@@ -6,9 +6,6 @@
 namespace monolith {
 namespace {
 
-// Part of its stencil's range by which a cubic overshoots at a smooth, resolved extremum (1/8), and a little more.
-constexpr double kOvershoot = 0.15;
-
 struct AxisStencil {
   int base = 0;      // node below the position
   double t = 0.0;    // from there, in [0, 1]

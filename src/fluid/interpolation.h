@@ -16,6 +16,9 @@ inline Eigen::Vector3d nodeOffset(int face_axis) {
   return offset;
 }
 
+// Part of its stencil's range by which a cubic overshoots at a smooth, resolved extremum (1/8), and a little more.
+constexpr double kOvershoot = 0.15;
+
 // Trilinear; positions are clamped to the tank along axes with walls, wrapped along periodic ones.
 double sampleLinear(const Lattice& lattice, const std::vector<double>& field, const Eigen::Vector3d& node_position);
 

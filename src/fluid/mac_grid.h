@@ -3,6 +3,7 @@
 // side of cell (i, j, k). World frame W; positions in m.
 
 #include <Eigen/Dense>
+#include <cmath>
 
 #include "solve/lattice.h"
 
@@ -20,6 +21,15 @@ struct MacGrid {
     Eigen::Vector3d x = cellCenter(i, j, k);
     x[axis] -= 0.5 * h;
     return x;
+  }
+  // From x to that of its periodic images which is nearest to p.
+  Eigen::Vector3d toNearestImage(const Eigen::Vector3d& x, const Eigen::Vector3d& p) const {
+    Eigen::Vector3d shift = Eigen::Vector3d::Zero();
+    for (int a = 0; a < 3; ++a) {
+      const double period = h * lattice.n[a];
+      if (lattice.periodic[a]) shift[a] = -period * std::round((x[a] - p[a]) / period);
+    }
+    return shift;
   }
   Eigen::Vector3d size() const {
     return h * Eigen::Vector3d(lattice.n[0], lattice.n[1], lattice.n[2]);

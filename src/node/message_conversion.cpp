@@ -92,6 +92,7 @@ monolith_tank::Statistics toStatistics(const StepReport& report, double real_tim
   message.friction_iterations = static_cast<std::uint32_t>(report.friction_iterations);
   message.rheology_iterations = static_cast<std::uint32_t>(report.rheology_iterations);
   message.residual = report.residual;
+  message.contact_residual = report.contact_residual;
   message.divergence = report.divergence;
   message.maximum_speed = report.maximum_speed;
   message.liquid_volume = report.liquid_volume;

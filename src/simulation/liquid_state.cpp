@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "fluid/advection.h"
 
@@ -60,6 +61,24 @@ MacGrid makeGrid(const TankDescription& tank, const LiquidDescription& liquid) {
   return grid;
 }
 
+void setVelocity(const MacGrid& grid, const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& velocity,
+                 FaceField<double>& faces) {
+  const Lattice& l = grid.lattice;
+  for (int a = 0; a < 3; ++a) {
+    faces[a].assign(l.size, 0.0);
+    for (int k = 0; k < l.faceEnd(2); ++k) {
+      for (int j = 0; j < l.faceEnd(1); ++j) {
+        for (int i = 0; i < l.faceEnd(0); ++i) {
+          const Eigen::Vector3d u = velocity(grid.faceCenter(a, i, j, k));
+          if (!u.allFinite()) throw std::invalid_argument("velocity of the liquid: expected finite numbers");
+          faces[a][l.index(i, j, k)] = u[a];
+        }
+      }
+    }
+    fillHalo(l, faces[a]);
+  }
+}
+
 void completeVelocity(const MacGrid& grid, const StepProblem& problem, const SolidFractions& solids,
                       const std::vector<RigidBody>& bodies, int layers, bool no_slip,
                       const std::array<std::vector<std::uint8_t>, 3>* usable, FaceField<double>& velocity,
@@ -81,7 +100,8 @@ void completeVelocity(const MacGrid& grid, const StepProblem& problem, const Sol
         if (wall_face) {
           known[a][f] = 1;
         } else if (no_slip) {
-          velocity[a][f] = bodies[owner].velocityAt(grid.faceCenter(a, i, j, k))[a];
+          const Eigen::Vector3d x = grid.faceCenter(a, i, j, k);
+          velocity[a][f] = bodies[owner].velocityAt(x + grid.toNearestImage(x, bodies[owner].p_WBcm))[a];
           known[a][f] = 1;
         }
       }
@@ -122,21 +142,30 @@ LiquidBudget liquidBudget(const MacGrid& grid, const FaceField<double>& liquid_m
                           const FreeSurface& surface, const std::vector<double>& cell_fluid, double density,
                           const Eigen::Vector3d& gravity) {
   const Lattice& l = grid.lattice;
-  LiquidBudget budget;
+  // One sum per plane, added in order: the same bits at any thread count.
+  std::vector<LiquidBudget> planes(l.faceEnd(2));
+#pragma omp parallel for schedule(static)
   for (int k = 0; k < l.faceEnd(2); ++k) {
+    LiquidBudget& plane = planes[k];
     for (int j = 0; j < l.faceEnd(1); ++j) {
       for (int i = 0; i < l.faceEnd(0); ++i) {
         const auto c = l.index(i, j, k);
         for (int a = 0; a < 3; ++a) {
           const double momentum = liquid_mass[a][c] * velocity[a][c];
-          budget.momentum[a] += momentum;
-          budget.kinetic += 0.5 * momentum * velocity[a][c];
+          plane.momentum[a] += momentum;
+          plane.kinetic += 0.5 * momentum * velocity[a][c];
         }
         if (i >= l.n[0] || j >= l.n[1] || k >= l.n[2]) continue;
         const double part = std::clamp(0.5 - surface.distance()[c], 0.0, 1.0) * cell_fluid[c];
-        if (part > 0.0) budget.potential -= part * gravity.dot(grid.cellCenter(i, j, k));
+        if (part > 0.0) plane.potential -= part * gravity.dot(grid.cellCenter(i, j, k));
       }
     }
+  }
+  LiquidBudget budget;
+  for (const LiquidBudget& plane : planes) {
+    budget.kinetic += plane.kinetic;
+    budget.potential += plane.potential;
+    budget.momentum += plane.momentum;
   }
   budget.kinetic *= density * grid.cellVolume();
   budget.potential *= density * grid.cellVolume();

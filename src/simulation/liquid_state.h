@@ -13,6 +13,10 @@ namespace monolith {
 // The tank's grid; a tank without liquid needs none, and one cell stands for it.
 MacGrid makeGrid(const TankDescription& tank, const LiquidDescription& liquid);
 
+// Velocity of every face of the tank from that of points in W. Throws std::invalid_argument unless finite.
+void setVelocity(const MacGrid& grid, const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& velocity,
+                 FaceField<double>& faces);
+
 // Marks the faces whose velocity is known, gives faces inside bodies the bodies' velocity where it sticks to them, and
 // spreads the rest into solids and air. `usable`: faces that may be known at all; nullptr: all.
 void completeVelocity(const MacGrid& grid, const StepProblem& problem, const SolidFractions& solids,

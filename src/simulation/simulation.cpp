@@ -181,6 +181,12 @@ void Simulation::setBodyState(int body, const Eigen::Isometry3d& X_WB, const Eig
   m.prepareGeometry();
 }
 
+void Simulation::setLiquidVelocity(const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& velocity) {
+  FaceField<double> faces;
+  setVelocity(impl_->grid, velocity, faces);
+  impl_->state.coupled.velocity = std::move(faces);
+}
+
 std::vector<SurfacePoint> Simulation::surfacePoints() const {
   return sampleSurface(impl_->grid, impl_->state.surface[0], impl_->solids.cell_distance,
                        impl_->state.coupled.velocity);

@@ -7,6 +7,7 @@
 // A step whose solve fails is not committed: the state stays as it was before, and the report says why.
 
 #include <Eigen/Geometry>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -54,6 +55,10 @@ class Simulation {
   // Throws std::invalid_argument unless finite and inside the tank.
   void setBodyState(int body, const Eigen::Isometry3d& X_WB, const Eigen::Vector3d& velocity,
                     const Eigen::Vector3d& angular_velocity);
+
+  // Gives the liquid, wherever it is, this velocity (m/s) of a point in W; of what diverges the next step takes the divergence.
+  // Throws std::invalid_argument unless finite.
+  void setLiquidVelocity(const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& velocity);
 
   // Points of the free surface, about one for each cell that it crosses; empty without a free surface.
   std::vector<SurfacePoint> surfacePoints() const;

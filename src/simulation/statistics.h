@@ -42,6 +42,7 @@ struct StepReport {
   int friction_iterations = 0;     // staggered projections, summed over the sub-steps
   int rheology_iterations = 0;     // of the viscosity, summed over the sub-steps; Newtonian: none
   double residual = 0.0;           // relative, worst of the sub-steps
+  double contact_residual = 0.0;   // of Coulomb's law, relative, worst of the sub-steps
   double divergence = 0.0;         // 1/s, largest in a liquid cell
   double maximum_speed = 0.0;      // m/s, in the liquid
   double liquid_volume = 0.0;      // m^3

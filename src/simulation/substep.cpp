@@ -206,6 +206,7 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
   step.liquid_solves += solved.solves;
   step.friction_iterations += solved.friction_iterations;
   step.residual = std::max(step.residual, solved.residual);
+  step.contact_residual = std::max(step.contact_residual, solved.contact_residual);
   step.divergence = std::max(step.divergence, solved.divergence);
   if (solved.status != CoupledReport::Status::kConverged) {
     step.status =

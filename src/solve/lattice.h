@@ -4,12 +4,17 @@
 // is the one at the low side (faces), low corner (edges) or inside (cells) of cell (i, j, k).
 //
 // Along an axis with walls faces run from 0 to n inclusive; along a periodic one from 0 to n - 1.
+//
+// x-rows are as long as whole groups of kLanes cells with their halo, so that kernels may work on such groups from the
+// first cell or face of a row on and never touch the next row's (stencil_blocks.h). What is beyond the halo stays zero.
 
 #include <array>
 #include <cstddef>
 #include <vector>
 
 namespace monolith {
+
+constexpr int kLanes = 8;
 
 struct Lattice {
   static constexpr int kLowHalo = 1;
@@ -24,7 +29,8 @@ struct Lattice {
   Lattice(const std::array<int, 3>& cells, const std::array<bool, 3>& periodic_axes)
       : n(cells), periodic(periodic_axes) {
     const std::ptrdiff_t halo = kLowHalo + kHighHalo;
-    stride = {1, n[0] + halo, (n[0] + halo) * (n[1] + halo)};
+    const std::ptrdiff_t width = (n[0] + kLanes - 1) / kLanes * kLanes + halo;
+    stride = {1, width, width * (n[1] + halo)};
     size = static_cast<std::size_t>(stride[2]) * static_cast<std::size_t>(n[2] + halo);
   }
 
@@ -37,13 +43,16 @@ struct Lattice {
   long cells() const { return static_cast<long>(n[0]) * n[1] * n[2]; }
 };
 
+// Smaller lattices are not worth waking a second thread for.
+constexpr std::size_t kSizeWorthSharing = 20000;
+
 // Calls f(row_start, j, k) for every x-row of faces (the range that covers all cells, faces and edges); f sees
 // rows of faceEnd(0) entries. Rows are shared among threads by k, so f may write its own row only.
 template <class RowFunction>
 void forEachRow(const Lattice& lattice, RowFunction&& f) {
   const int end_j = lattice.faceEnd(1);
   const int end_k = lattice.faceEnd(2);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (lattice.size >= kSizeWorthSharing)
   for (int k = 0; k < end_k; ++k) {
     for (int j = 0; j < end_j; ++j) {
       f(lattice.index(0, j, k), j, k);
@@ -53,7 +62,7 @@ void forEachRow(const Lattice& lattice, RowFunction&& f) {
 
 // Copies the periodic images into the halo; nothing along axes with walls.
 template <class Value>
-void fillHalo(const Lattice& lattice, std::vector<Value>& field) {
+void fillHalo(const Lattice& lattice, Value* field) {
   for (int axis = 0; axis < 3; ++axis) {
     if (!lattice.periodic[axis]) continue;
     const int b = (axis + 1) % 3;
@@ -72,6 +81,11 @@ void fillHalo(const Lattice& lattice, std::vector<Value>& field) {
       }
     }
   }
+}
+
+template <class Value>
+void fillHalo(const Lattice& lattice, std::vector<Value>& field) {
+  fillHalo(lattice, field.data());
 }
 
 // Fills the halo of a cell field: beyond walls with the nearest value inside, along periodic axes with the images.
@@ -96,7 +110,7 @@ void extendIntoHalo(const Lattice& lattice, std::vector<Value>& cells) {
 
 // Zeroes the periodic images, so that sums over the whole array count each unknown once.
 template <class Value>
-void clearHalo(const Lattice& lattice, std::vector<Value>& field) {
+void clearHalo(const Lattice& lattice, Value* field) {
   for (int axis = 0; axis < 3; ++axis) {
     if (!lattice.periodic[axis]) continue;
     const int b = (axis + 1) % 3;
@@ -112,6 +126,11 @@ void clearHalo(const Lattice& lattice, std::vector<Value>& field) {
       }
     }
   }
+}
+
+template <class Value>
+void clearHalo(const Lattice& lattice, std::vector<Value>& field) {
+  clearHalo(lattice, field.data());
 }
 
 }  // namespace monolith

@@ -1,208 +1,313 @@
 #include "solve/pressure_multigrid.h"
 
+#include <algorithm>
+
 #include "solve/staggered_transfer.h"
 
 namespace monolith {
 namespace {
 
 constexpr int kSmootherDegree = 3;
-constexpr int kCoarsestDegree = 24;
+constexpr float kRatio = 6.0f;
+constexpr int kCoarsestDegree = 24;  // where there are too many cells to be solved directly
+constexpr float kCoarsestRatio = 100.0f;
+constexpr std::size_t kDirectCells = 216;
+// Of the diagonal: makes a sealed tank's network definite. Its right sides hold no constant but for round-off.
+constexpr double kShift = 1e-5;
+constexpr float kLargestLift = 1.5f;
+
+// A conductance g to the air says that the surface is 1/g cells above the cell's centre. The centre of the coarse cell is
+// half a fine cell lower, or higher if the surface runs through it.
+float liftedToAir(float g, bool inside) {
+  return inside ? 2.0f * g / (1.0f - 0.5f * std::min(g, kLargestLift)) : 2.0f * g / (1.0f + 0.5f * g);
+}
 
 }  // namespace
 
-void PressureMultigrid::set(const StaggeredCoefficients<float>& c) {
-  effectiveMass(c, mass_);
+void PressureMultigrid::set(const Lattice& l, const std::vector<std::uint8_t>& has_pressure,
+                            FaceField<float> conductance) {
   std::size_t count = 1;
-  for (Lattice l = c.lattice; canCoarsen(l); l = coarsened(l)) ++count;
+  for (Lattice c = l; canCoarsen(c); c = coarsened(c)) ++count;
   levels_.resize(count);
-  Level& fine = levels_[0];
-  const Lattice& l = c.lattice;
-  fine.lattice = l;
-  for (auto& field : fine.conductance) field.assign(l.size, 0.0f);
-  fine.to_air.assign(l.size, 0.0f);
-  fine.kind.assign(l.size, kOutside);
-  for (std::size_t cell = 0; cell < l.size; ++cell) fine.kind[cell] = c.has_pressure[cell] ? kLiquid : kOutside;
-  fillHalo(l, fine.kind);
+  Network network;
+  network.kind.assign(l.size, kOutside);
+  for (std::size_t cell = 0; cell < l.size; ++cell) network.kind[cell] = has_pressure[cell] ? kLiquid : kOutside;
+  fillHalo(l, network.kind);
+  network.to_air.assign(l.size, 0.0f);
+  std::vector<std::uint8_t> kind = network.kind;
+  forEachRow(l, [&](std::ptrdiff_t row, int, int) {
+    for (auto c = row; c < row + l.faceEnd(0); ++c) {
+      for (int a = 0; a < 3; ++a) {
+        const auto sa = l.stride[a];
+        const float low = conductance[a][c], high = conductance[a][c + sa];
+        if (network.kind[c] != kLiquid) {
+          if (low > 0.0f || high > 0.0f) kind[c] = kAir;
+          continue;
+        }
+        if (network.kind[c - sa] != kLiquid) network.to_air[c] += low;
+        if (network.kind[c + sa] != kLiquid) network.to_air[c] += high;
+      }
+    }
+  });
   for (int a = 0; a < 3; ++a) {
     const auto sa = l.stride[a];
     forEachRow(l, [&](std::ptrdiff_t row, int, int) {
       for (auto f = row; f < row + l.faceEnd(0); ++f) {
-        if (!(mass_[a][f] > 0.0f)) continue;
-        const float conductance = c.open[a][f] * c.open[a][f] / mass_[a][f];
-        const bool low = fine.kind[f - sa] == kLiquid;
-        const bool high = fine.kind[f] == kLiquid;
-        if (low && high) fine.conductance[a][f] = conductance;
+        if (network.kind[f - sa] != kLiquid || network.kind[f] != kLiquid) conductance[a][f] = 0.0f;
       }
     });
-    // Towards the air: one cell has pressure, the other not. Its own loop, for it writes to both sides of the row.
-    for (int k = 0; k < l.faceEnd(2); ++k) {
-      for (int j = 0; j < l.faceEnd(1); ++j) {
-        for (int i = 0; i < l.faceEnd(0); ++i) {
-          const auto f = l.index(i, j, k);
-          if (!(mass_[a][f] > 0.0f) || fine.conductance[a][f] > 0.0f) continue;
-          int before[3] = {i, j, k};
-          --before[a];
-          if (before[a] < 0) before[a] += l.n[a];
-          const auto low = l.index(before[0], before[1], before[2]);
-          const float conductance = c.open[a][f] * c.open[a][f] / mass_[a][f];
-          for (const auto cell : {low, f}) {
-            if (fine.kind[cell] == kLiquid) {
-              fine.to_air[cell] += conductance;
-            } else {
-              fine.kind[cell] = kAir;
-            }
-          }
-        }
-      }
-    }
-    fillHalo(l, fine.conductance[a]);
+    fillHalo(l, conductance[a]);
   }
-  fillHalo(l, fine.kind);
-  finish(fine);
+  network.kind.swap(kind);
+  fillHalo(l, network.kind);
+  network.conductance = std::move(conductance);
+  network.beyond.resize(l.size);
+  for (std::size_t c = 0; c < l.size; ++c) network.beyond[c] = network.kind[c] == kAir;
+  levels_[0].lattice = l;
+  finish(network, levels_[0]);
   for (std::size_t index = 1; index < count; ++index) {
-    coarsen(levels_[index - 1], levels_[index]);
-    finish(levels_[index]);
+    Network coarse;
+    levels_[index].lattice = coarsened(levels_[index - 1].lattice);
+    coarsen(levels_[index - 1].lattice, network, levels_[index].lattice, coarse);
+    finish(coarse, levels_[index]);
+    findExtension(coarse, levels_[index]);
+    network = std::move(coarse);
   }
-  levels_.back().range.ratio = count > 1 ? 100.0f : 6.0f;
+  levels_.back().range.ratio = count > 1 ? kCoarsestRatio : kRatio;
+  coarsest_cells_.clear();
+  if (count > 1) invert(network, levels_.back());
 }
 
-void PressureMultigrid::coarsen(const Level& fine, Level& coarse) const {
-  coarse.lattice = coarsened(fine.lattice);
-  const Lattice& l = coarse.lattice;
+void PressureMultigrid::coarsen(const Lattice& from, const Network& fine, const Lattice& l, Network& coarse) const {
   for (int a = 0; a < 3; ++a) {
-    restrictFaces(fine.lattice, a, fine.conductance[a], l, coarse.conductance[a]);
+    restrictFaces(from, a, fine.conductance[a], l, coarse.conductance[a]);
     fillHalo(l, coarse.conductance[a]);
   }
-  // Sum over eight children, with the same factor as a sum over four faces.
-  restrictCells(fine.lattice, fine.to_air, l, coarse.to_air);
-  for (float& value : coarse.to_air) value *= 2.0f;
+  coarse.to_air.assign(l.size, 0.0f);
   coarse.kind.assign(l.size, kOutside);
+#pragma omp parallel for schedule(static) if (from.size >= kSizeWorthSharing)
   for (int k = 0; k < l.n[2]; ++k) {
     for (int j = 0; j < l.n[1]; ++j) {
       for (int i = 0; i < l.n[0]; ++i) {
-        Kind& kind = reinterpret_cast<Kind&>(coarse.kind[l.index(i, j, k)]);
-        for (int child = 0; child < 8 && kind != kLiquid; ++child) {
-          const auto cell = fine.lattice.index(2 * i + (child & 1), 2 * j + ((child >> 1) & 1), 2 * k + (child >> 2));
-          if (fine.kind[cell] != kOutside) kind = static_cast<Kind>(fine.kind[cell]);
+        bool liquid = false, air = false, beyond = false;
+        for (int child = 0; child < 8; ++child) {
+          const auto cell = from.index(2 * i + (child & 1), 2 * j + ((child >> 1) & 1), 2 * k + (child >> 2));
+          liquid = liquid || fine.kind[cell] == kLiquid;
+          air = air || fine.kind[cell] == kAir;
+          beyond = beyond || fine.beyond[cell];
         }
+        const auto c = l.index(i, j, k);
+        coarse.kind[c] = liquid ? kLiquid : air ? kAir : kOutside;
+        if (!liquid) continue;
+        float sum = 0.0f;
+        for (int child = 0; child < 8; ++child) {
+          const auto cell = from.index(2 * i + (child & 1), 2 * j + ((child >> 1) & 1), 2 * k + (child >> 2));
+          sum += liftedToAir(fine.to_air[cell], beyond);
+        }
+        // Over eight children, with the same factor as over four faces.
+        coarse.to_air[c] = 0.25f * sum;
       }
     }
   }
   fillHalo(l, coarse.kind);
+  fillHalo(l, coarse.to_air);
+  coarse.beyond.assign(l.size, 0);
+  forEachRow(l, [&](std::ptrdiff_t row, int, int) {
+    for (auto c = row; c < row + l.n[0]; ++c) {
+      if (coarse.kind[c] == kLiquid) continue;
+      coarse.beyond[c] = coarse.kind[c] == kAir;
+      for (const auto s : l.stride) {
+        for (const auto other : {c - s, c + s}) coarse.beyond[c] |= coarse.to_air[other] > 0.0f;
+      }
+    }
+  });
 }
 
-void PressureMultigrid::finish(Level& level) const {
+void PressureMultigrid::finish(const Network& network, Level& level) const {
   const Lattice& l = level.lattice;
-  for (auto* field : {&level.inverse_diagonal, &level.x, &level.b, &level.r, &level.d}) field->assign(l.size, 0.0f);
-  forEachRow(l, [&](std::ptrdiff_t row, int, int) {
-    for (auto f = row; f < row + l.faceEnd(0); ++f) {
-      if (level.kind[f] != kLiquid) continue;
-      float sum = level.to_air[f];
-      for (int a = 0; a < 3; ++a) sum += level.conductance[a][f] + level.conductance[a][f + l.stride[a]];
-      level.inverse_diagonal[f] = sum > 0.0f ? 1.0f / sum : 0.0f;
+  for (auto* field : {&level.x, &level.next, &level.d, &level.mask}) field->assign(l.size, 0.0f);
+  if (&level != &levels_[0]) level.b.assign(l.size, 0.0f);
+  level.blocks.build(l, {0}, [&](int, std::ptrdiff_t row, int width, auto& k) {
+    for (int i = 0; i < width; ++i) {
+      const auto c = row + i;
+      const bool liquid = network.kind[c] == kLiquid;
+      float sum = k[kToAir][i] = liquid ? network.to_air[c] : 0.0f;
+      for (int a = 0; a < 3; ++a) {
+        sum += k[kLow + a][i] = liquid ? network.conductance[a][c] : 0.0f;
+        sum += k[kHigh + a][i] = liquid ? network.conductance[a][c + l.stride[a]] : 0.0f;
+      }
+      level.mask[c] = k[kInverse][i] = sum > 0.0f ? 1.0f / sum : 0.0f;
     }
   });
   // L is an M-matrix: the spectrum of D^-1 L lies in [0, 2].
   level.range.largest = 2.0f;
-  level.range.ratio = 6.0f;
+  level.range.ratio = kRatio;
 }
 
-// Gives cells in solids and beyond the walls the value next to them, so that interpolation sees no boundary there.
-// Cells in the air keep zero, their pressure.
-void PressureMultigrid::extend(Level& level) const {
+// Cells in solids and beyond the walls get the value next to them, so that interpolation sees no boundary there. Cells in
+// the air keep zero, their pressure.
+void PressureMultigrid::findExtension(const Network& network, Level& level) const {
   const Lattice& l = level.lattice;
+  level.extension.clear();
   std::vector<std::uint8_t> known(l.size);
-  for (std::size_t c = 0; c < l.size; ++c) known[c] = level.kind[c] != kOutside;
+  for (std::size_t c = 0; c < l.size; ++c) known[c] = network.kind[c] != kOutside;
   for (int axis = 0; axis < 3; ++axis) {
     const std::vector<std::uint8_t> before = known;
     const auto s = l.stride[axis];
-    for (auto c = s; c + s < static_cast<std::ptrdiff_t>(l.size); ++c) {
-      if (before[c]) continue;
-      const int count = before[c - s] + before[c + s];
-      if (count == 0) continue;
-      level.x[c] = ((before[c - s] ? level.x[c - s] : 0.0f) + (before[c + s] ? level.x[c + s] : 0.0f)) / count;
-      known[c] = 1;
+    int low[3] = {-1, -1, -1}, high[3] = {l.n[0] + 1, l.n[1] + 1, l.n[2] + 1};
+    for (int k = low[2]; k < high[2]; ++k) {
+      for (int j = low[1]; j < high[1]; ++j) {
+        for (int i = low[0]; i < high[0]; ++i) {
+          const int at[3] = {i, j, k};
+          const auto c = l.index(i, j, k);
+          if (before[c]) continue;
+          const bool below = at[axis] > -1 && before[c - s], above = before[c + s];
+          if (!below && !above) continue;
+          const auto a = static_cast<std::int32_t>(below ? c - s : c + s);
+          const auto b = static_cast<std::int32_t>(above ? c + s : c - s);
+          level.extension.push_back({static_cast<std::int32_t>(c), a, b});
+          known[c] = 1;
+        }
+      }
     }
   }
 }
 
-void PressureMultigrid::residual(Level& level) {
+void PressureMultigrid::invert(const Network& network, const Level& level) {
   const Lattice& l = level.lattice;
-  fillHalo(l, level.x);
-  const int width = l.faceEnd(0);
-  forEachRow(l, [&](std::ptrdiff_t row, int, int) {
-    const float* x = level.x.data() + row;
-    const float* b = level.b.data() + row;
-    const float* inverse = level.inverse_diagonal.data() + row;
-    const float *gx = level.conductance[0].data() + row, *gy = level.conductance[1].data() + row,
-                *gz = level.conductance[2].data() + row;
-    const float* to_air = level.to_air.data() + row;
-    float* r = level.r.data() + row;
-    const auto sy = l.stride[1];
-    const auto sz = l.stride[2];
-#pragma omp simd
-    for (int i = 0; i < width; ++i) {
-      const float Lx = to_air[i] * x[i] + gx[i] * (x[i] - x[i - 1]) + gx[i + 1] * (x[i] - x[i + 1]) + gy[i] * (x[i] - x[i - sy]) +
-                       gy[i + sy] * (x[i] - x[i + sy]) + gz[i] * (x[i] - x[i - sz]) + gz[i + sz] * (x[i] - x[i + sz]);
-      r[i] = inverse[i] > 0.0f ? b[i] - Lx : 0.0f;
+  std::vector<int> number(l.size, -1);
+  for (int k = 0; k < l.n[2]; ++k) {
+    for (int j = 0; j < l.n[1]; ++j) {
+      for (int i = 0; i < l.n[0]; ++i) {
+        const auto c = l.index(i, j, k);
+        if (!(level.mask[c] > 0.0f)) continue;
+        number[c] = static_cast<int>(coarsest_cells_.size());
+        coarsest_cells_.push_back(static_cast<std::int32_t>(c));
+      }
     }
+  }
+  if (coarsest_cells_.size() > kDirectCells) coarsest_cells_.clear();
+  if (coarsest_cells_.empty()) return;
+  fillHalo(l, number);
+  const auto count = static_cast<Eigen::Index>(coarsest_cells_.size());
+  Eigen::MatrixXd L = Eigen::MatrixXd::Zero(count, count);
+  for (Eigen::Index row = 0; row < count; ++row) {
+    const std::ptrdiff_t c = coarsest_cells_[row];
+    L(row, row) += network.to_air[c] + kShift / level.mask[c];
+    for (int a = 0; a < 3; ++a) {
+      for (const auto& [face, other] : {std::pair(c, c - l.stride[a]), std::pair(c + l.stride[a], c + l.stride[a])}) {
+        const double g = network.conductance[a][face];
+        if (!(g > 0.0) || number[other] < 0) continue;
+        L(row, row) += g;
+        L(row, number[other]) -= g;
+      }
+    }
+  }
+  inverse_ = L.llt().solve(Eigen::MatrixXd::Identity(count, count)).cast<float>();
+}
+
+namespace {
+
+// L x of a block. 20 flops over the pattern's 8 and the field's 7 loads a cell.
+inline void network(const Lattice& l, const float* k, const float* x, float* out) {
+  const auto sy = l.stride[1], sz = l.stride[2];
+#pragma omp simd
+  for (int i = 0; i < kLanes; ++i) {
+    const float at = x[i];
+    out[i] = k[i] * at + k[1 * kLanes + i] * (at - x[i - 1]) + k[4 * kLanes + i] * (at - x[i + 1]) +
+             k[2 * kLanes + i] * (at - x[i - sy]) + k[5 * kLanes + i] * (at - x[i + sy]) +
+             k[3 * kLanes + i] * (at - x[i - sz]) + k[6 * kLanes + i] * (at - x[i + sz]);
+  }
+}
+
+}  // namespace
+
+// Streams 12 bytes a cell.
+void PressureMultigrid::residual(Level& level, float* r) const {
+  const float *x = level.x.data(), *b = level.right;
+  level.blocks.forEach([&](int, std::ptrdiff_t c, const float* k) {
+    float Lx[kLanes];
+    network(level.lattice, k, x + c, Lx);
+#pragma omp simd
+    for (int i = 0; i < kLanes; ++i) r[c + i] = k[kInverse * kLanes + i] > 0.0f ? b[c + i] - Lx[i] : 0.0f;
   });
 }
 
-void PressureMultigrid::smooth(Level& level, int degree, bool from_zero) {
-  const auto size = static_cast<std::ptrdiff_t>(level.lattice.size);
+// A step streams 20 bytes a cell for 26 flops: bound by the second cache or memory.
+void PressureMultigrid::smooth(Level& level, int degree, bool from_zero) const {
   ChebyshevRecurrence recurrence(level.range);
-  float* x = level.x.data();
+  const float* b = level.right;
   float* d = level.d.data();
-  const float* inverse = level.inverse_diagonal.data();
   for (int step = 0; step < degree; ++step) {
-    const bool zero = from_zero && step == 0;
-    if (!zero) residual(level);
     if (step > 0) recurrence.next();
-    const float keep = step > 0 ? recurrence.keep() : 0.0f;
-    const float scale = recurrence.scale();
-    const float* r = zero ? level.b.data() : level.r.data();
-    if (step == 0) {
-#pragma omp parallel for simd schedule(static)
-      for (std::ptrdiff_t c = 0; c < size; ++c) {
-        d[c] = scale * inverse[c] * r[c];
-        x[c] = (zero ? 0.0f : x[c]) + d[c];
-      }
+    const float keep = recurrence.keep(), scale = recurrence.scale();
+    if (from_zero && step == 0) {
+      float* x = level.x.data();
+      level.blocks.forEach([&](int, std::ptrdiff_t c, const float* k) {
+#pragma omp simd
+        for (int i = 0; i < kLanes; ++i) x[c + i] = d[c + i] = scale * k[kInverse * kLanes + i] * b[c + i];
+      });
     } else {
-#pragma omp parallel for simd schedule(static)
-      for (std::ptrdiff_t c = 0; c < size; ++c) {
-        d[c] = keep * d[c] + scale * inverse[c] * r[c];
-        x[c] += d[c];
-      }
+      const float* x = level.x.data();
+      float* next = level.next.data();
+      level.blocks.forEach([&](int, std::ptrdiff_t c, const float* k) {
+        float Lx[kLanes];
+        network(level.lattice, k, x + c, Lx);
+#pragma omp simd
+        for (int i = 0; i < kLanes; ++i) {
+          d[c + i] = keep * d[c + i] + scale * k[kInverse * kLanes + i] * (b[c + i] - Lx[i]);
+          next[c + i] = x[c + i] + d[c + i];
+        }
+      });
+      level.x.swap(level.next);
     }
+    fillHalo(level.lattice, level.x);
   }
 }
 
 void PressureMultigrid::descend(std::size_t index) {
   Level& level = levels_[index];
   if (index + 1 == levels_.size()) {
-    smooth(level, kCoarsestDegree, true);
+    if (coarsest_cells_.empty()) {
+      smooth(level, kCoarsestDegree, true);
+      return;
+    }
+    const auto count = static_cast<Eigen::Index>(coarsest_cells_.size());
+    Eigen::VectorXf b(count);
+    for (Eigen::Index i = 0; i < count; ++i) b[i] = level.right[coarsest_cells_[i]];
+    const Eigen::VectorXf x = inverse_ * b;
+    for (Eigen::Index i = 0; i < count; ++i) level.x[coarsest_cells_[i]] = x[i];
+    fillHalo(level.lattice, level.x);
     return;
   }
   smooth(level, kSmootherDegree, true);
-  residual(level);
+  residual(level, level.next.data());
   Level& coarse = levels_[index + 1];
-  restrictCells(level.lattice, level.r, coarse.lattice, coarse.b);
   // The operator is scaled by the cell width squared, which doubles twice per level.
-  for (float& b : coarse.b) b *= 4.0f;
+  restrictResidual(level.lattice, level.next.data(), coarse.lattice, 4.0f, coarse.b.data());
+  coarse.right = coarse.b.data();
   descend(index + 1);
-  fillHalo(coarse.lattice, coarse.x);
-  extend(coarse);
-  clearHalo(level.lattice, level.x);
-  prolongateCells(coarse.lattice, coarse.x, level.lattice, level.inverse_diagonal, level.x);
+  for (const Extension& e : coarse.extension) coarse.x[e.to] = 0.5f * (coarse.x[e.a] + coarse.x[e.b]);
+  prolongateCells(coarse.lattice, coarse.x.data(), level.lattice, level.mask.data(), level.x.data());
+  // The extension must not be seen by the coarse operator next time.
+  for (const Extension& e : coarse.extension) coarse.x[e.to] = 0.0f;
+  fillHalo(level.lattice, level.x);
   smooth(level, kSmootherDegree, false);
 }
 
-void PressureMultigrid::cycle(const std::vector<float>& b, std::vector<float>& x) {
-  levels_[0].b = b;
+float* PressureMultigrid::cycle(const float* b) {
+  levels_[0].right = b;
   descend(0);
-  x = levels_[0].x;
-  clearHalo(levels_[0].lattice, x);
+  return levels_[0].x.data();
+}
+
+std::size_t PressureMultigrid::bytes() const {
+  std::size_t sum = inverse_.size() * sizeof(float);
+  for (const Level& level : levels_) {
+    sum += level.blocks.bytes() + level.extension.size() * sizeof(Extension);
+    for (const auto* field : {&level.mask, &level.x, &level.next, &level.b, &level.d}) sum += field->size() * sizeof(float);
+  }
+  return sum;
 }
 
 }  // namespace monolith

@@ -1,50 +1,70 @@
 #pragma once
 // One geometric multigrid V-cycle for the pressure block L = C mass^-1 C^T with the effective mass of
-// staggered_operator.h, a seven-point operator, in single precision.
+// staggered_operator.h, a seven-point operator, in single precision. Linear: the same map on every call.
 //
 // L is a network: conductance open^2/mass on every face between two cells with pressure, and towards the air, where the
 // pressure is zero. A coarse face takes the mean of the four fine ones that it consists of (aggregation, Braess 1995,
-// with the factor that makes it consistent), so cut cells, thin gaps and the free surface coarsen without geometry.
+// with the factor that makes it consistent), so cut cells, thin gaps and the free surface coarsen without geometry; the
+// conductance to the air follows the surface's distance to the centre of the coarse cell.
 
+#include <Eigen/Dense>
 #include <vector>
 
 #include "solve/chebyshev.h"
+#include "solve/stencil_blocks.h"
 #include "solve/staggered_operator.h"
 
 namespace monolith {
 
 class PressureMultigrid {
  public:
-  // The network of the finest level; the coarser ones follow from it.
-  void set(const StaggeredCoefficients<float>& fine);
+  // The network of the finest level, its halo filled: the coarser ones follow from it.
+  void set(const Lattice& lattice, const std::vector<std::uint8_t>& has_pressure, FaceField<float> conductance);
 
-  // Effective mass of the faces of the finest level.
-  const FaceField<float>& mass() const { return mass_; }
+  // Approximate solution x of L x = b, zero outside of cells with pressure; its halo is filled. It may be changed in
+  // place and is valid until the next call.
+  float* cycle(const float* b);
 
-  // x = approximate solution of L x = b.
-  void cycle(const std::vector<float>& b, std::vector<float>& x);
+  std::size_t bytes() const;
 
  private:
   enum Kind : std::uint8_t { kOutside, kLiquid, kAir };
 
-  struct Level {
-    Lattice lattice;
-    FaceField<float> conductance;      // between cells with pressure
-    std::vector<float> to_air;         // per cell, sum over its faces
-    std::vector<std::uint8_t> kind;
-    std::vector<float> inverse_diagonal, x, b, r, d;
-    ChebyshevRange range;
+  // Places of the coefficients in a cell's pattern: conductances to the air, down and up each axis, 1/diagonal.
+  enum : int { kToAir, kLow, kHigh = 4, kInverse = 7, kCount };
+
+  // x[to] = mean of x[a] and x[b]
+  struct Extension {
+    std::int32_t to, a, b;
   };
 
-  void coarsen(const Level& fine, Level& coarse) const;
-  void finish(Level& level) const;
-  void extend(Level& level) const;
-  void residual(Level& level);
-  void smooth(Level& level, int degree, bool from_zero);
+  struct Level {
+    Lattice lattice;
+    StencilBlocks<float, kCount> blocks;
+    std::vector<float> mask, x, next, b, d;
+    std::vector<Extension> extension;
+    const float* right = nullptr;
+    ChebyshevRange range;
+  };
+  // What coarsening needs of a level.
+  struct Network {
+    FaceField<float> conductance;  // between cells with pressure
+    std::vector<float> to_air;     // per cell, sum over its faces
+    std::vector<std::uint8_t> kind;
+    std::vector<std::uint8_t> beyond;  // cells across the surface: air, also where coarse cells have lost sight of it
+  };
+
+  void coarsen(const Lattice& from, const Network& fine, const Lattice& l, Network& coarse) const;
+  void finish(const Network& network, Level& level) const;
+  void findExtension(const Network& network, Level& level) const;
+  void invert(const Network& network, const Level& level);
+  void residual(Level& level, float* r) const;
+  void smooth(Level& level, int degree, bool from_zero) const;
   void descend(std::size_t index);
 
-  FaceField<float> mass_;
   std::vector<Level> levels_;
+  std::vector<std::int32_t> coarsest_cells_;  // if few enough to be solved directly
+  Eigen::MatrixXf inverse_;
 };
 
 }  // namespace monolith

@@ -13,7 +13,7 @@ constexpr int kMaximumAlternations = 200;
 constexpr int kSweepsPerAlternation = 50;  // of the friction problem, which need not be solved closely
 constexpr int kNewtonSteps = 12;
 constexpr double kCloser = 0.5;
-constexpr int kMaximumSweeps = 5000;
+constexpr int kMaximumSweeps = 1000;
 constexpr int kAngles = 72;  // of the search for the direction of slip
 
 double largest(const Eigen::VectorXd& v) { return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0.0; }
@@ -81,18 +81,35 @@ void newton(const Eigen::MatrixXd& D, const Eigen::VectorXd& w0, const Eigen::Ve
   }
 }
 
-bool alternate(const Eigen::MatrixXd& D, const Eigen::VectorXd& w0, const Eigen::VectorXd& mu, double goal,
-               Eigen::VectorXd& r, FrictionReport& report) {
+// The iterate that has come closest to the law so far, of all methods.
+struct Closest {
+  double goal;
+  Eigen::VectorXd r;
+  double residual = std::numeric_limits<double>::infinity();
+
+  bool arrived() const { return residual <= goal; }
+  // Returns whether that is close enough.
+  bool offer(const Eigen::VectorXd& candidate, double its_residual) {
+    if (its_residual < residual) {
+      r = candidate;
+      residual = its_residual;
+    }
+    return arrived();
+  }
+};
+
+void alternate(const Eigen::MatrixXd& D, const Eigen::VectorXd& w0, const Eigen::VectorXd& mu, Eigen::VectorXd r,
+               Closest& closest, FrictionReport& report) {
   const Eigen::Index m = mu.size();
   const bool frictionless = !(mu.maxCoeff() > 0.0);
   if (frictionless) r.tail(2 * m).setZero();
-  double best = std::numeric_limits<double>::infinity();
+  double least = std::numeric_limits<double>::infinity();
   for (int it = 0; it < kMaximumAlternations; ++it) {
     ++report.iterations;
     Eigen::VectorXd lambda;
     const LcpReport lcp =
         solveLcp(D.topLeftCorner(m, m), w0.head(m) + D.topRightCorner(m, 2 * m) * r.tail(2 * m), lambda);
-    if (!lcp.solved) return false;
+    if (!lcp.solved) return;
     r.head(m) = lambda;
     if (!frictionless) {
       Eigen::VectorXd f = r.tail(2 * m);
@@ -102,21 +119,15 @@ bool alternate(const Eigen::MatrixXd& D, const Eigen::VectorXd& w0, const Eigen:
                                     1e-14, kSweepsPerAlternation, f));
       r.tail(2 * m) = f;
     }
-    report.residual = coulombResidual(D, w0, mu, r);
-    if (report.residual <= goal) return true;
+    const double residual = coulombResidual(D, w0, mu, r);
+    if (closest.offer(r, residual)) return;
     // Worth a try whenever alternation has come clearly closer.
-    if (report.residual > kCloser * best) continue;
-    best = report.residual;
+    if (residual > kCloser * least) continue;
+    least = residual;
     Eigen::VectorXd candidate = r;
-    newton(D, w0, mu, goal, candidate, report);
-    const double reached = coulombResidual(D, w0, mu, candidate);
-    if (reached <= goal) {
-      r = candidate;
-      report.residual = reached;
-      return true;
-    }
+    newton(D, w0, mu, closest.goal, candidate, report);
+    if (closest.offer(candidate, coulombResidual(D, w0, mu, candidate))) return;
   }
-  return false;
 }
 
 // Impulse of a contact that slips with friction in direction t (angle): w_n = 0. Returns how far the slip turns from
@@ -161,8 +172,8 @@ Eigen::Vector3d solveOneContact(const Eigen::Matrix3d& B, const Eigen::Vector3d&
   return old;
 }
 
-bool sweep(const Eigen::MatrixXd& D, const Eigen::VectorXd& w0, const Eigen::VectorXd& mu, double goal,
-           Eigen::VectorXd& r, FrictionReport& report) {
+void sweep(const Eigen::MatrixXd& D, const Eigen::VectorXd& w0, const Eigen::VectorXd& mu, Eigen::VectorXd r,
+           Closest& closest, FrictionReport& report) {
   const Eigen::Index m = mu.size();
   report.staggered = false;
   Eigen::VectorXd w = D * r + w0;
@@ -184,10 +195,8 @@ bool sweep(const Eigen::MatrixXd& D, const Eigen::VectorXd& w0, const Eigen::Vec
         w += D.col(at[i]) * step[i];
       }
     }
-    report.residual = coulombResidual(D, w0, mu, r);
-    if (report.residual <= goal) return true;
+    if (closest.offer(r, coulombResidual(D, w0, mu, r))) return;
   }
-  return false;
 }
 
 }  // namespace
@@ -220,19 +229,16 @@ FrictionReport solveFrictionalContact(const Eigen::MatrixXd& D, const Eigen::Vec
     return report;
   }
   const double scale = std::max(largest(w0), 1e-300);
-  const double goal = tolerance * scale;
+  Closest closest{tolerance * scale, r};
   // A start that is nearly right, such as the last step's impulses, is only polished: where the law has more than one
   // answer, it stays with the nearest.
-  newton(D, w0, mu, goal, r, report);
-  report.residual = coulombResidual(D, w0, mu, r);
-  report.solved = report.residual <= goal;
-  const Eigen::VectorXd start = r;
-  if (!report.solved) report.solved = alternate(D, w0, mu, goal, r, report);
-  if (!report.solved) {
-    r = start;
-    report.solved = sweep(D, w0, mu, goal, r, report);
-  }
-  report.residual /= scale;
+  newton(D, w0, mu, closest.goal, r, report);
+  closest.offer(r, coulombResidual(D, w0, mu, r));
+  if (!closest.arrived()) alternate(D, w0, mu, r, closest, report);
+  if (!closest.arrived()) sweep(D, w0, mu, r, closest, report);
+  r = closest.r;
+  report.solved = closest.arrived();
+  report.residual = closest.residual / scale;
   return report;
 }
 

@@ -25,7 +25,7 @@ struct FrictionReport {
 double coulombResidual(const Eigen::MatrixXd& D, const Eigen::VectorXd& w0, const Eigen::VectorXd& mu,
                        const Eigen::VectorXd& r);
 
-// r: start on entry (only its friction part counts), solution on return.
+// r: start on entry, on return the solution or, unsolved, what came closest to it.
 [[nodiscard]] FrictionReport solveFrictionalContact(const Eigen::MatrixXd& D, const Eigen::VectorXd& w0,
                                                     const Eigen::VectorXd& mu, double tolerance, Eigen::VectorXd& r);
 

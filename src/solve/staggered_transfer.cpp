@@ -1,5 +1,7 @@
 #include "solve/staggered_transfer.h"
 
+#include <algorithm>
+
 namespace monolith {
 
 Lattice coarsened(const Lattice& fine) {
@@ -18,7 +20,7 @@ void restrictCells(const Lattice& fine, const std::vector<Real>& from, const Lat
   to.assign(coarse.size, Real(0));
   const auto sy = fine.stride[1];
   const auto sz = fine.stride[2];
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (fine.size >= kSizeWorthSharing)
   for (int k = 0; k < coarse.n[2]; ++k) {
     for (int j = 0; j < coarse.n[1]; ++j) {
       const Real* f = from.data() + fine.index(0, 2 * j, 2 * k);
@@ -50,82 +52,147 @@ void restrictFaces(const Lattice& fine, int axis, const std::vector<Real>& from,
   }
 }
 
-void restrictResidual(const Lattice& fine, int axis, const std::vector<float>& from, const Lattice& coarse,
-                      std::vector<float>& to) {
-  to.assign(coarse.size, 0.0f);
-  const auto sa = fine.stride[axis];
-  const auto sb = fine.stride[(axis + 1) % 3];
-  const auto sc = fine.stride[(axis + 2) % 3];
+// One row of a restriction: fine rows are summed first, contiguously, then along x.
+void restrictResidual(const Lattice& fine, int axis, const float* from, const Lattice& coarse, float* to) {
+  const auto sy = fine.stride[1];
+  const auto sz = fine.stride[2];
   int end[3];
+  // The last coarse face may lie beyond the fine grid, where there is nothing.
   for (int a = 0; a < 3; ++a) end[a] = a == axis ? std::min(coarse.faceEnd(a), fine.n[a] / 2 + 1) : coarse.n[a];
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (fine.size >= kSizeWorthSharing)
   for (int k = 0; k < end[2]; ++k) {
+    std::vector<float> sums(2 * end[0] + 2);
+    float* sum = sums.data() + 1;
+    const int width = 2 * end[0];
     for (int j = 0; j < end[1]; ++j) {
-      const float* f = from.data() + fine.index(0, 2 * j, 2 * k);
-      float* out = to.data() + coarse.index(0, j, k);
-      for (int i = 0; i < end[0]; ++i, f += 2) {
-        const float* g = f - sa;
-        const float* e = f + sa;
-        out[i] = 0.125f * (f[0] + f[sb] + f[sc] + f[sb + sc]) +
-                 0.0625f * (g[0] + g[sb] + g[sc] + g[sb + sc] + e[0] + e[sb] + e[sc] + e[sb + sc]);
+      const float* f = from + fine.index(0, 2 * j, 2 * k);
+      float* out = to + coarse.index(0, j, k);
+      if (axis == 0) {
+#pragma omp simd
+        for (int i = -1; i < width; ++i) sum[i] = f[i] + f[i + sy] + f[i + sz] + f[i + sy + sz];
+#pragma omp simd
+        for (int i = 0; i < end[0]; ++i) {
+          out[i] = 0.125f * sum[2 * i] + 0.0625f * (sum[2 * i - 1] + sum[2 * i + 1]);
+        }
+      } else {
+        const auto along = axis == 1 ? sy : sz, across = axis == 1 ? sz : sy;
+#pragma omp simd
+        for (int i = 0; i < width; ++i) {
+          const float* g = f + i;
+          sum[i] = 0.125f * (g[0] + g[across]) +
+                   0.0625f * (g[-along] + g[across - along] + g[along] + g[across + along]);
+        }
+#pragma omp simd
+        for (int i = 0; i < end[0]; ++i) out[i] = sum[2 * i] + sum[2 * i + 1];
       }
     }
   }
 }
 
-void prolongateFaces(const Lattice& coarse, int axis, const std::vector<float>& from, const Lattice& fine,
-                     const std::vector<float>& face_weight, std::vector<float>& to) {
-  const int width = fine.faceEnd(0);
-  forEachRow(fine, [&](std::ptrdiff_t row, int j, int k) {
-    const int fine_index[3] = {0, j, k};
-    // Coarse neighbours along y and z: the nearer one and the other, with weights.
+void restrictResidual(const Lattice& fine, const float* from, const Lattice& coarse, float factor, float* to) {
+  const auto sy = fine.stride[1];
+  const auto sz = fine.stride[2];
+  const int width = 2 * coarse.n[0];
+#pragma omp parallel for schedule(static) if (fine.size >= kSizeWorthSharing)
+  for (int k = 0; k < coarse.n[2]; ++k) {
+    std::vector<float> sum(width);
+    for (int j = 0; j < coarse.n[1]; ++j) {
+      const float* f = from + fine.index(0, 2 * j, 2 * k);
+      float* out = to + coarse.index(0, j, k);
+#pragma omp simd
+      for (int i = 0; i < width; ++i) sum[i] = f[i] + f[i + sy] + f[i + sz] + f[i + sy + sz];
+#pragma omp simd
+      for (int i = 0; i < coarse.n[0]; ++i) out[i] = 0.125f * factor * (sum[2 * i] + sum[2 * i + 1]);
+    }
+  }
+}
+
+namespace {
+
+// Coarse row interpolated to the y and z of a fine row: the nearer one and the other along each axis, with weights. `faces`:
+// axis along which both lie on the same planes, or -1.
+class CoarseRow {
+ public:
+  CoarseRow(const Lattice& coarse, int faces) : coarse_(coarse), faces_(faces), values_(coarse.n[0] + 3) {}
+
+  // Entries -1 to n + 1.
+  const float* at(const float* from, int j, int k) {
+    const int fine[3] = {0, j, k};
     std::ptrdiff_t other[3] = {0, 0, 0};
-    float weight[3] = {0, 0, 0};
+    float weight[3] = {0.0f, 0.0f, 0.0f};
     for (int a = 1; a < 3; ++a) {
-      const bool odd = fine_index[a] & 1;
-      if (a == axis) {
-        other[a] = odd ? coarse.stride[a] : 0;
+      const bool odd = fine[a] & 1;
+      if (a == faces_) {
+        other[a] = odd ? coarse_.stride[a] : 0;
         weight[a] = odd ? 0.5f : 0.0f;
       } else {
-        other[a] = odd ? coarse.stride[a] : -coarse.stride[a];
+        other[a] = odd ? coarse_.stride[a] : -coarse_.stride[a];
         weight[a] = 0.25f;
       }
     }
-    const float* c = from.data() + coarse.index(0, j / 2, k / 2);
-    const float* m = face_weight.data() + row;
-    float* out = to.data() + row;
-    const auto along = [&](const float* p, int i) {
-      if (axis == 0) return (i & 1) ? 0.5f * (p[0] + p[1]) : p[0];
-      return (i & 1) ? 0.75f * p[0] + 0.25f * p[1] : 0.75f * p[0] + 0.25f * p[-1];
-    };
-    for (int i = 0; i < width; ++i) {
-      if (!(m[i] > 0.0f)) continue;
-      const float* p = c + i / 2;
-      const float near = (1 - weight[1]) * along(p, i) + weight[1] * along(p + other[1], i);
-      const float far = weight[2] > 0.0f ? (1 - weight[1]) * along(p + other[2], i) +
-                                               weight[1] * along(p + other[1] + other[2], i)
-                                         : 0.0f;
-      out[i] += m[i] * ((1 - weight[2]) * near + weight[2] * far);
+    const float near = (1.0f - weight[1]) * (1.0f - weight[2]), y = weight[1] * (1.0f - weight[2]);
+    const float z = (1.0f - weight[1]) * weight[2], far = weight[1] * weight[2];
+    const float* c = from + coarse_.index(0, j / 2, k / 2);
+    float* out = values_.data() + 1;
+#pragma omp simd
+    for (int i = -1; i < coarse_.n[0] + 2; ++i) {
+      out[i] = near * c[i] + y * c[i + other[1]] + z * c[i + other[2]] + far * c[i + other[1] + other[2]];
     }
-  });
+    return out;
+  }
+
+ private:
+  const Lattice& coarse_;
+  int faces_;
+  std::vector<float> values_;
+};
+
+}  // namespace
+
+void prolongateFaces(const Lattice& coarse, int axis, const float* from, const Lattice& fine, const float* weight,
+                     float* to) {
+  const int pairs = (fine.faceEnd(0) + 1) / 2;
+#pragma omp parallel for schedule(static) if (fine.size >= kSizeWorthSharing)
+  for (int k = 0; k < fine.faceEnd(2); ++k) {
+    CoarseRow interpolated(coarse, axis);
+    for (int j = 0; j < fine.faceEnd(1); ++j) {
+      const float* c = interpolated.at(from, j, k);
+      const float* m = weight + fine.index(0, j, k);
+      float* out = to + fine.index(0, j, k);
+      if (axis == 0) {
+#pragma omp simd
+        for (int i = 0; i < pairs; ++i) {
+          out[2 * i] += m[2 * i] * c[i];
+          out[2 * i + 1] += m[2 * i + 1] * (0.5f * (c[i] + c[i + 1]));
+        }
+      } else {
+#pragma omp simd
+        for (int i = 0; i < pairs; ++i) {
+          out[2 * i] += m[2 * i] * (0.75f * c[i] + 0.25f * c[i - 1]);
+          out[2 * i + 1] += m[2 * i + 1] * (0.75f * c[i] + 0.25f * c[i + 1]);
+        }
+      }
+    }
+  }
 }
 
-void prolongateCells(const Lattice& coarse, const std::vector<float>& from, const Lattice& fine,
-                     const std::vector<float>& mask, std::vector<float>& to) {
-  forEachRow(fine, [&](std::ptrdiff_t row, int j, int k) {
-    const auto sy = (j & 1) ? coarse.stride[1] : -coarse.stride[1];
-    const auto sz = (k & 1) ? coarse.stride[2] : -coarse.stride[2];
-    const float* c = from.data() + coarse.index(0, j / 2, k / 2);
-    const float* has = mask.data() + row;
-    float* out = to.data() + row;
-    for (int i = 0; i < fine.n[0]; ++i) {
-      if (!(has[i] > 0.0f)) continue;
-      const float* p = c + i / 2;
-      const int sx = (i & 1) ? 1 : -1;
-      const auto line = [&](const float* q) { return 0.75f * q[0] + 0.25f * q[sx]; };
-      out[i] += 0.75f * (0.75f * line(p) + 0.25f * line(p + sy)) + 0.25f * (0.75f * line(p + sz) + 0.25f * line(p + sy + sz));
+void prolongateCells(const Lattice& coarse, const float* from, const Lattice& fine, const float* mask, float* to) {
+  const int pairs = (fine.n[0] + 1) / 2;
+#pragma omp parallel for schedule(static) if (fine.size >= kSizeWorthSharing)
+  for (int k = 0; k < fine.n[2]; ++k) {
+    CoarseRow interpolated(coarse, -1);
+    for (int j = 0; j < fine.n[1]; ++j) {
+      const float* c = interpolated.at(from, j, k);
+      const float* has = mask + fine.index(0, j, k);
+      float* out = to + fine.index(0, j, k);
+#pragma omp simd
+      for (int i = 0; i < pairs; ++i) {
+        const float low = 0.75f * c[i] + 0.25f * c[i - 1], high = 0.75f * c[i] + 0.25f * c[i + 1];
+        out[2 * i] += has[2 * i] > 0.0f ? low : 0.0f;
+        out[2 * i + 1] += has[2 * i + 1] > 0.0f ? high : 0.0f;
+      }
     }
-  });
+  }
 }
 
 #define MONOLITH_INSTANTIATE(Real)                                                                                \

@@ -23,14 +23,15 @@ void restrictFaces(const Lattice& fine, int axis, const std::vector<Real>& from,
 
 // Averages with weights 1/4, 1/2, 1/4 along the axis of the faces: the adjoint of linear interpolation there.
 // The halo of `from` must be filled.
-void restrictResidual(const Lattice& fine, int axis, const std::vector<float>& from, const Lattice& coarse,
-                      std::vector<float>& to);
+void restrictResidual(const Lattice& fine, int axis, const float* from, const Lattice& coarse, float* to);
+
+// to = factor * cell averages over 2 x 2 x 2.
+void restrictResidual(const Lattice& fine, const float* from, const Lattice& coarse, float factor, float* to);
 
 // to += weight * interpolation of `from`; the halo of `from` must be filled.
-void prolongateFaces(const Lattice& coarse, int axis, const std::vector<float>& from, const Lattice& fine,
-                     const std::vector<float>& weight, std::vector<float>& to);
+void prolongateFaces(const Lattice& coarse, int axis, const float* from, const Lattice& fine, const float* weight,
+                     float* to);
 // to += interpolation of `from` where mask > 0; the halo of `from` must be filled.
-void prolongateCells(const Lattice& coarse, const std::vector<float>& from, const Lattice& fine,
-                     const std::vector<float>& mask, std::vector<float>& to);
+void prolongateCells(const Lattice& coarse, const float* from, const Lattice& fine, const float* mask, float* to);
 
 }  // namespace monolith

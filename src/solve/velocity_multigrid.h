@@ -2,38 +2,41 @@
 // One geometric multigrid V-cycle for the viscous block of the momentum equation, in single precision: a preconditioner,
 // not a solver. Chebyshev smoothing; the coarse operators are given, one StaggeredCoefficients a level. A face that is
 // tied to a solid has no coarse counterpart as stiff as itself: in both transfers it counts by its free share,
-// 1 - tie/diagonal, and the smoother does the rest.
+// 1 - tie/diagonal, and the smoother does the rest. Linear: the same map on every call.
 
 #include <vector>
 
 #include "solve/chebyshev.h"
-#include "solve/staggered_operator.h"
+#include "solve/stokes_stencil.h"
 
 namespace monolith {
 
 class VelocityMultigrid {
  public:
-  // Levels from fine to coarse, each coarsened() of the one before; the first `count` are used and must outlive the multigrid.
-  void setLevels(const std::vector<StaggeredCoefficients<float>>& levels, std::size_t count);
+  // The finest level with its transfer weights, and the levels below it: coarse[1] to coarse[count - 1], each
+  // coarsened() of the one before. `fine` must outlive the multigrid. smoother_degree: Chebyshev steps before and after.
+  void set(const Lattice& lattice, const FaceBlocks<float>& fine, FaceField<float>&& transfer,
+           const std::vector<StaggeredCoefficients<float>>& coarse, std::size_t count, int smoother_degree);
+  // Approximate solution x of A x = b, zero where there is no unknown; valid until the next call.
+  Faces<const float> cycle(const Faces<const float>& b);
 
-  // x = approximate solution of A x = b. Halos of b need not be filled; x's halo is zero.
-  void cycle(const FaceField<float>& b, FaceField<float>& x);
+  std::size_t bytes() const;
 
  private:
   struct Level {
-    const StaggeredCoefficients<float>* c = nullptr;
-    FaceField<float> inverse_diagonal, x, b, r, d;
-    FaceField<float> transfer;  // share of a face's correction that comes from the coarser level
-    StressSamples<float> stress;
+    Lattice lattice;
+    FaceBlocks<float> own;
+    const FaceBlocks<float>* blocks = nullptr;
+    FaceField<float> transfer, x, next, b, d;
     ChebyshevRange range;
+    Faces<const float> right{};
   };
 
   void smooth(Level& level, int degree, bool from_zero);
-  void residual(Level& level);
-  void apply(Level& level, FaceField<float>& x, FaceField<float>& Ax);
   void descend(std::size_t index);
 
   std::vector<Level> levels_;
+  int degree_ = 2;
 };
 
 }  // namespace monolith

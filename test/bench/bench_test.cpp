@@ -39,9 +39,10 @@ TEST(Bench, WritesALineOfJsonWithEveryKey) {
   while (std::getline(lines, line)) {
     ++count;
     for (const std::string key :
-         {"size", "threads", "viscous_number", "bodies", "contacts", "solver", "ms_per_step", "iterations",
-          "liquid_solves", "bytes_per_cell", "stage_ms", "advection", "contact", "geometry", "solve", "surface",
-          "bandwidth_share", "speedup", "cpu_ms", "commit", "machine", "true_error", "iteration_growth"}) {
+         {"size",        "threads",    "viscous_number", "bodies",         "contacts",        "solver",
+          "ms_per_step", "iterations", "liquid_solves",  "bytes_per_cell", "stage_ms",        "advection",
+          "contact",     "geometry",   "solve",          "surface",        "bandwidth_share", "speedup",
+          "cpu_ms",      "commit",     "machine",        "true_error",     "iteration_growth"}) {
       EXPECT_NE(line.find("\"" + key + "\": "), std::string::npos) << key << " in " << line;
     }
     EXPECT_NE(line.find("\"good\": true"), std::string::npos) << line;

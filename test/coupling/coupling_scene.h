@@ -56,7 +56,7 @@ struct CouplingScene {
       }
     }
     extendIntoHalo(l, liquid);
-    const StokesGeometry geometry{&solids.fluid, &solids.distance, &liquid};
+    const StokesGeometry geometry{&solids.fluid, &solids.distance, &liquid, &solids.cell_distance};
     buildCoefficients(l, geometry, number, coefficients);
     buildBodyRows(grid, solids, bodies, geometry, coefficients, rows);
   }

@@ -93,7 +93,7 @@ bodies:
     position: [2.0, 2.5, 3.5]
     orientation: {quaternion: [0, 0, 0.70710678, 0.70710678]}
     motion: prescribed
-    prescribed: {twist: [1, 2, 3, 4, 5, 6], amplitude: [6, 5, 4, 3, 2, 1], frequency: 2, phase: 0.25}
+    prescribed: {twist: [1, 2, 3, 4, 5, 6], amplitude: [6, 5, 4, 3, 2, 1], frequency: 2, phase: 0.25, in_place: true}
 )");
   EXPECT_EQ(scene.name, "all");
   EXPECT_EQ(scene.tank.size, Vector3d(2, 1, 1));
@@ -133,6 +133,7 @@ bodies:
   EXPECT_EQ(moved.prescribed.amplitude[0], 6.0);
   EXPECT_EQ(moved.prescribed.frequency, 2.0);
   EXPECT_EQ(moved.prescribed.phase, 0.25);
+  EXPECT_TRUE(moved.prescribed.in_place);
 }
 
 TEST_F(SceneFile, EachViolationNamesLineKeyValueAndExpectation) {

@@ -19,8 +19,7 @@ Row measure(const Case& wanted, const Options& options, double stream) {
   row.wanted = wanted;
   row.accuracy = inChild<Accuracy>([&] { return measureAccuracy(wanted, options.error, options.tolerance); });
   if (!row.accuracy.good) return row;
-  row.steps =
-      inChild<StepFigures>([&] { return measureSteps(wanted, row.accuracy.tolerance, options.repetitions); });
+  row.steps = inChild<StepFigures>([&] { return measureSteps(wanted, row.accuracy.tolerance, options.repetitions); });
   if (!row.steps.good) return row;
   const double touched = row.steps.bytes_per_cell * std::pow(wanted.size, 3) * row.steps.iterations;
   row.bandwidth = touched / (1e-3 * row.steps.solve_ms);

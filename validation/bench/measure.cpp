@@ -23,15 +23,13 @@
 namespace monolith::bench {
 namespace {
 
-constexpr double kTight = 1e-10;     // tolerance of the solve that counts as exact
-constexpr int kWarmUp = 2;           // steps before those that are timed
-constexpr double kPush = 0.1;        // of its weight, on each body
+constexpr double kTight = 1e-10;  // tolerance of the solve that counts as exact
+constexpr int kWarmUp = 2;        // steps before those that are timed
+constexpr double kPush = 0.1;     // of its weight, on each body
 constexpr double kLoosest = 0.1, kTightest = 1e-9;
 const double kGrade = std::sqrt(10.0);  // between the tolerances that are tried
 
-double seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 double cpuSeconds() {
   timespec t{};
@@ -223,8 +221,8 @@ StepFigures measureSteps(const Case& wanted, double tolerance, int repetitions) 
     for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
       const double angle = 0.5 * M_PI * (i + static_cast<int>(b));
       Wrench push;
-      push.force = kPush * scene.bodies[b].mass * scene.gravity.norm() *
-                   Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0);
+      push.force =
+          kPush * scene.bodies[b].mass * scene.gravity.norm() * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0);
       simulation.setWrench(static_cast<int>(b), push);
     }
     if (i == 0) cpu = cpuSeconds();

@@ -60,9 +60,12 @@ SolverName solver(const std::string& option, const std::string& text) {
 
 const char* toString(SolverName name) {
   switch (name) {
-    case SolverName::kDirect: return "direct";
-    case SolverName::kReference: return "reference";
-    case SolverName::kFast: break;
+    case SolverName::kDirect:
+      return "direct";
+    case SolverName::kReference:
+      return "reference";
+    case SolverName::kFast:
+      break;
   }
   return "fast";
 }
@@ -109,9 +112,9 @@ Options parse(int argc, char** argv) {
       value = name.substr(equals + 1);
       name.resize(equals);
     }
-    static const std::vector<std::string> kNames = {
-        "--sizes",  "--threads", "--viscous-number", "--bodies",    "--contacts",    "--solver",
-        "--against", "--fill",   "--error",          "--tolerance", "--repetitions", "--json"};
+    static const std::vector<std::string> kNames = {"--sizes",    "--threads",   "--viscous-number", "--bodies",
+                                                    "--contacts", "--solver",    "--against",        "--fill",
+                                                    "--error",    "--tolerance", "--repetitions",    "--json"};
     if (std::find(kNames.begin(), kNames.end(), name) == kNames.end()) {
       throw std::invalid_argument("unknown option '" + name + "': expected one of those that --help lists");
     }
@@ -130,8 +133,7 @@ Options parse(int argc, char** argv) {
     if (name == "--viscous-number") {
       options.viscous_numbers.clear();
       for (const std::string& part : split(value)) {
-        options.viscous_numbers.push_back(
-            number(name, part, 0.0, 1e9, "numbers from 0 to 1e9, separated by commas"));
+        options.viscous_numbers.push_back(number(name, part, 0.0, 1e9, "numbers from 0 to 1e9, separated by commas"));
       }
     }
     if (name == "--solver") {

@@ -44,13 +44,14 @@ class JsonObject {
 }  // namespace
 
 void printHead(std::FILE* to) {
-  std::fprintf(to,
-               "Times in ms of the median step; iter: Krylov iterations a step, x: against the first size; solves: with\n"
-               "the whole liquid; B/cell: memory at its peak; bw: bandwidth of the solve if each iteration went through\n"
-               "that memory once, part of this machine's; scale: against the first number of threads.\n"
-               "%5s %3s %8s %6s %8s %9s %8s %7s | %8s %6s %6s %6s %8s %6s %6s | %7s %5s %6s %6s %5s %5s %8s %8s\n",
-               "cells", "thr", "nu dt/h2", "bodies", "contacts", "solver", "tol", "error", "ms/step", "advect", "contct",
-               "geom", "solve", "surf", "other", "cpu ms", "iter", "x", "solves", "B/cel", "bw", "scale", "speedup");
+  std::fprintf(
+      to,
+      "Times in ms of the median step; iter: Krylov iterations a step, x: against the first size; solves: with\n"
+      "the whole liquid; B/cell: memory at its peak; bw: bandwidth of the solve if each iteration went through\n"
+      "that memory once, part of this machine's; scale: against the first number of threads.\n"
+      "%5s %3s %8s %6s %8s %9s %8s %7s | %8s %6s %6s %6s %8s %6s %6s | %7s %5s %6s %6s %5s %5s %8s %8s\n",
+      "cells", "thr", "nu dt/h2", "bodies", "contacts", "solver", "tol", "error", "ms/step", "advect", "contct", "geom",
+      "solve", "surf", "other", "cpu ms", "iter", "x", "solves", "B/cel", "bw", "scale", "speedup");
 }
 
 void printRow(const Row& row, std::FILE* to) {

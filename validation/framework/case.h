@@ -1,6 +1,6 @@
 #pragma once
-// A validation case: physics whose answer is known, computed by the production library on scenes that a user could write,
-// with what a user could choose (Numerics) varied. Each of its runs gives errors and the time that they took.
+// A validation case: physics whose answer is known, computed by the production library on scenes that a user could
+// write, with what a user could choose (Numerics) varied. Each of its runs gives errors and the time that they took.
 //
 // A new case is one file in validation/physics that defines `Case name();` and one line in physics/case_list.inc.
 
@@ -26,11 +26,11 @@ struct Numerics {
 };
 
 struct Measurement {
-  std::string quantity;   // with its unit: "peak speed, m/s"
+  std::string quantity;  // with its unit: "peak speed, m/s"
   double result = 0.0;
   double reference = 0.0;
-  double goal = 0.0;      // largest |error()| that is wanted; 0: none
-  double scale = 0.0;     // of the error; 0: the reference
+  double goal = 0.0;   // largest |error()| that is wanted; 0: none
+  double scale = 0.0;  // of the error; 0: the reference
   double error() const { return (result - reference) / (scale != 0.0 ? scale : reference); }
 };
 
@@ -41,7 +41,7 @@ Measurement observed(const std::string& phenomenon, bool seen);
 using RunFunction = std::function<std::vector<Measurement>(const Numerics&, Meter&)>;
 
 struct Variant {
-  std::string name;    // what is simulated; not what with
+  std::string name;  // what is simulated; not what with
   Numerics numerics;
   bool judged = true;  // goals count: not where a sweep makes the numerics worse on purpose
   RunFunction run;
@@ -65,13 +65,14 @@ struct Case {
   std::vector<ExpectedOrder> orders;
 };
 
-// Base numerics, and the values that replace one of them at a time. The runs with other steps or tolerances are not judged.
+// Base numerics, and the values that replace one of them at a time. The runs with other steps or tolerances are not
+// judged.
 struct Sweep {
   Numerics base;
   std::vector<double> cells;  // all of them, the base's included; empty: the base's
   std::vector<double> steps;
   std::vector<double> tolerances;
-  bool fractions = false;     // the base also with the paper's volume fractions, not judged
+  bool fractions = false;  // the base also with the paper's volume fractions, not judged
 };
 void addSweep(const std::string& variant, const Sweep& sweep, const RunFunction& run, std::vector<Variant>& out);
 

@@ -31,10 +31,10 @@ class Meter {
   // The number of cells that a whole number of them in the tank led to, where it is not what the numerics ask for.
   void setCellsAcross(double cells) { cells_across_ = cells; }
 
-  double cpu() const;   // s, since construction
-  double wall() const;  // s, since construction
-  double simulated() const { return simulated_; }  // s
-  double dt() const { return dt_; }                // s, of the last step
+  double cpu() const;                                   // s, since construction
+  double wall() const;                                  // s, since construction
+  double simulated() const { return simulated_; }       // s
+  double dt() const { return dt_; }                     // s, of the last step
   double cellsAcross() const { return cells_across_; }  // 0: as asked for
   long steps() const { return steps_; }
   long substeps() const { return substeps_; }

@@ -17,9 +17,12 @@ bool same(const Numerics& a, const Numerics& b) {
 
 const char* toString(SolverName name) {
   switch (name) {
-    case SolverName::kFast: return "fast";
-    case SolverName::kDirect: return "direct";
-    case SolverName::kReference: return "reference";
+    case SolverName::kFast:
+      return "fast";
+    case SolverName::kDirect:
+      return "direct";
+    case SolverName::kReference:
+      return "reference";
   }
   return "";
 }
@@ -30,9 +33,8 @@ const char* toString(Discretisation discretisation) {
 
 bool Run::good() const {
   if (!failure.empty()) return false;
-  return !judged || std::all_of(measurements.begin(), measurements.end(), [](const Measurement& m) {
-    return m.goal == 0.0 || std::abs(m.error()) <= m.goal;
-  });
+  return !judged || std::all_of(measurements.begin(), measurements.end(),
+                                [](const Measurement& m) { return m.goal == 0.0 || std::abs(m.error()) <= m.goal; });
 }
 
 std::vector<Variant> variantsOf(const Case& what, Extent extent, const Overrides& overrides) {
@@ -84,22 +86,23 @@ Run execute(const Case& what, const Variant& variant, const std::function<void(d
 }
 
 double observedOrder(const std::vector<Run>& runs, const ExpectedOrder& what) {
-  // The runs of a sweep share everything but one thing with the first run of the variant.
-  const Run* base = nullptr;
+  // Every run of the variant may be in the sweep that is meant: the one with the most runs.
   std::vector<std::pair<double, double>> points;
-  for (const Run& run : runs) {
-    if (run.variant != what.variant || !run.failure.empty()) continue;
-    if (base == nullptr) base = &run;
-    Numerics expected = base->numerics;
-    if (what.in_time) expected.dt = run.numerics.dt;
-    if (!what.in_time) expected.cells_across = run.numerics.cells_across;
-    if (run.steady) expected.dt = run.numerics.dt;
-    if (!same(expected, run.numerics)) continue;
-    for (const Measurement& m : run.measurements) {
-      if (m.quantity != what.quantity || m.error() == 0.0) continue;
-      const double fineness = what.in_time ? run.numerics.dt : 1.0 / run.numerics.cells_across;
-      points.emplace_back(std::log(fineness), std::log(std::abs(m.error())));
+  for (const Run& base : runs) {
+    std::vector<std::pair<double, double>> found;
+    for (const Run& run : runs) {
+      if (base.variant != what.variant || run.variant != what.variant || !run.failure.empty()) continue;
+      Numerics expected = base.numerics;
+      if (what.in_time || run.steady) expected.dt = run.numerics.dt;
+      if (!what.in_time) expected.cells_across = run.numerics.cells_across;
+      if (!same(expected, run.numerics)) continue;
+      for (const Measurement& m : run.measurements) {
+        if (m.quantity != what.quantity || m.error() == 0.0) continue;
+        const double fineness = what.in_time ? run.numerics.dt : 1.0 / run.numerics.cells_across;
+        found.emplace_back(std::log(fineness), std::log(std::abs(m.error())));
+      }
     }
+    if (found.size() > points.size()) points.swap(found);
   }
   const double n = static_cast<double>(points.size());
   double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;

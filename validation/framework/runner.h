@@ -42,8 +42,8 @@ std::vector<Variant> variantsOf(const Case& what, Extent extent, const Overrides
 
 Run execute(const Case& what, const Variant& variant, const std::function<void(double)>& progress = {});
 
-// Slope of log |error| over the logarithm of the cell width (or of dt, in_time) by least squares, over the runs of one variant
-// that differ in nothing else. NaN for less than two of them.
+// Slope of log |error| over the logarithm of the cell width (or of dt, in_time) by least squares, over the runs of one
+// variant that differ in nothing else. NaN for less than two of them.
 double observedOrder(const std::vector<Run>& runs, const ExpectedOrder& what);
 
 const char* toString(SolverName name);

@@ -18,8 +18,8 @@ BodyDescription boxBody(const std::string& name, const Eigen::Vector3d& size, do
 BodyDescription cylinderBody(const std::string& name, double radius, double length, double density,
                              const Eigen::Vector3d& position);
 
-// Tolerance, solver and discretisation as the numerics have them; one thread, so that CPU time is work; the time step unless
-// the numerics leave it to the scene. The cell width is the case's to derive from cells_across.
+// Tolerance, solver and discretisation as the numerics have them; one thread, so that CPU time is work; the time step
+// unless the numerics leave it to the scene. The cell width is the case's to derive from cells_across.
 void apply(const Numerics& numerics, Scene& scene);
 
 }  // namespace monolith

@@ -1,5 +1,6 @@
-// Flow in a square cavity under a moving lid, plane (periodic along y): profiles of Ghia, Ghia & Shin 1982, J. Comput. Phys. 48, 387,
-// tables I and II, right to about 1 % of the lid's speed. Their v(0.9063) at Re 400 is a misprint and left out.
+// Flow in a square cavity under a moving lid, plane (periodic along y): profiles of Ghia, Ghia & Shin 1982, J. Comput.
+// Phys. 48, 387, tables I and II, right to about 1 % of the lid's speed. Their v(0.9063) at Re 400 is a misprint and
+// left out.
 
 #include <algorithm>
 #include <cmath>
@@ -77,7 +78,8 @@ std::vector<Variant> variants(Extent extent) {
     if (full) sweep.steps = {1.0 / 16.0, 1.0 / 32.0, 1.0 / 128.0};
     char name[32];
     std::snprintf(name, sizeof name, "Re %g", kReynolds[which]);
-    addSweep(name, sweep, [which](const Numerics& n, Meter& meter) { return run(which, n, meter); }, out);
+    addSweep(
+        name, sweep, [which](const Numerics& n, Meter& meter) { return run(which, n, meter); }, out);
   }
   return out;
 }

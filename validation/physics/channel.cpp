@@ -18,7 +18,7 @@ constexpr int kPoints = 200000;  // of the quadratures
 struct Channel {
   std::string name;
   RheologyDescription rheology;
-  double viscosity = 0.0;                       // of a Newtonian liquid
+  double viscosity = 0.0;                        // of a Newtonian liquid
   std::function<double(double)> rate_of_stress;  // the exact law, 1/s of Pa
 };
 
@@ -72,9 +72,8 @@ std::vector<Channel> channels() {
   carreau.infinite_shear_viscosity = 0.1;
   carreau.time_constant = 1.0;
   carreau.index = 0.4;
-  out.push_back({"Carreau, n 0.4", carreau, 0.0, inverted([](double rate) {
-                   return 0.1 + 9.9 * std::pow(1.0 + rate * rate, 0.5 * (0.4 - 1.0));
-                 })});
+  out.push_back({"Carreau, n 0.4", carreau, 0.0,
+                 inverted([](double rate) { return 0.1 + 9.9 * std::pow(1.0 + rate * rate, 0.5 * (0.4 - 1.0)); })});
   out.push_back({"Herschel-Bulkley, m 20, n 0.6", herschelBulkley(15.0, 8.0, 0.6, 20.0), 0.0, inverted([](double rate) {
                    const double eta = 8.0 * std::pow(rate, -0.4) + 15.0 * (1.0 - std::exp(-20.0 * rate)) / rate;
                    return std::min(eta, 8.0 + 20.0 * 15.0);
@@ -102,8 +101,8 @@ Scene channelScene(const Channel& channel, const Numerics& numerics) {
   return scene;
 }
 
-// Exact velocities at the centres of the lower half's cells by the midpoint rule from the wall: u' = rate(stress). Returns
-// the mean.
+// Exact velocities at the centres of the lower half's cells by the midpoint rule from the wall: u' = rate(stress).
+// Returns the mean.
 double exactProfile(const Channel& channel, int cells, std::vector<double>& velocities) {
   const int each = kPoints / cells;  // points in half a cell
   const double dy = 0.5 * kWidth / cells / each;

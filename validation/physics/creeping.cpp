@@ -7,9 +7,9 @@
 namespace monolith {
 namespace {
 
-constexpr double kLongStep = 10.0;  // in units of the time that viscosity takes across a length of 1
+constexpr double kViscousNumber = 500.0;  // nu dt/h^2
 constexpr double kSteady = 1e-6;
-constexpr int kMostSteps = 20;
+constexpr int kMostSteps = 200;
 
 }  // namespace
 
@@ -24,7 +24,7 @@ Scene creepingScene(const Eigen::Vector3d& size, double cell_width, const Numeri
   scene.liquid.dynamic_viscosity = 1.0;
   scene.liquid.fill_level = size[2];
   scene.gravity.setZero();
-  scene.time_step = kLongStep;
+  scene.time_step = kViscousNumber * cell_width * cell_width;
   scene.solver.cfl = 1e12;  // nothing that moves need be followed
   apply(numerics, scene);
   return scene;

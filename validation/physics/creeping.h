@@ -1,6 +1,6 @@
 #pragma once
-// Creeping flow about bodies: dimensionless scenes (density and viscosity 1, lengths about 1) whose steps are so long that
-// inertia is nothing: each is a steady state.
+// Creeping flow about bodies: dimensionless scenes (density and viscosity 1, lengths about 1) whose steps are so long
+// that a few lead to the steady state.
 
 #include "framework/case.h"
 #include "framework/meter.h"

@@ -1,6 +1,7 @@
-// Stokes drag and torque of a cube of edge s at the centre of a closed cubic box of 7 s. Without walls F = 12.72 mu s U and
-// T = 8 pi mu W 0.3206 s^3. The walls act on it as on a sphere of the same F, T: 1/(1 - 1.943 l + 1.66 l^3 - 0.81 l^5) for the drag,
-// 1 + 0.0057 (l/0.2)^3 for the torque, l that sphere's radius over half the box's side; right to about 0.2 %.
+// Stokes drag and torque of a cube of edge s at the centre of a closed cubic box of 7 s. Without walls F = 12.72 mu s U
+// and T = 8 pi mu W 0.3206 s^3. The walls act on it as on a sphere of the same F, T: 1/(1 - 1.943 l + 1.66 l^3 - 0.81
+// l^5) for the drag, 1 + 0.0057 (l/0.2)^3 for the torque, l that sphere's radius over half the box's side; right to
+// about 0.2 %.
 
 #include <cmath>
 

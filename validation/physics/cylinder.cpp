@@ -1,5 +1,5 @@
-// Plane Stokes flow about an endless cylinder along the periodic axis z: drag midway between two walls, and torque inside a fixed
-// concentric ring (Taylor-Couette).
+// Plane Stokes flow about an endless cylinder along the periodic axis z: drag midway between two walls, and torque
+// inside a fixed concentric ring (Taylor-Couette).
 
 #include <cmath>
 #include <memory>
@@ -10,7 +10,8 @@
 namespace monolith {
 namespace {
 
-// Diameter over the channel's width, F/(4 pi mu U) per length: method of fundamental solutions; Faxen 1946 within 2e-5 up to 0.2.
+// Diameter over the channel's width, F/(4 pi mu U) per length: method of fundamental solutions; Faxen 1946 within 2e-5
+// up to 0.2.
 struct Row {
   double ratio, drag;
 };
@@ -77,7 +78,7 @@ std::vector<Measurement> torque(double ratio, const Numerics& numerics, Meter& m
   BodyDescription outer = boxBody("outer", {1.0, 1.0, depth}, 1.0, middle);
   outer.shapes[0].kind = Shape::Kind::kMesh;
   outer.shapes[0].mesh = ring(b, 0.5, 4.0 * depth);
-  outer.motion = BodyMotion::kFixed;
+  moveInPlace(outer, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
   scene.bodies.push_back(outer);
   Simulation simulation(scene);
   const auto inner_torque = [&](const StepReport&) { return -simulation.bodyStates()[0].liquid.torque[2]; };
@@ -88,7 +89,7 @@ std::vector<Measurement> torque(double ratio, const Numerics& numerics, Meter& m
   const double goal = dragGoal(2.0 * a * cells);
   return {{"torque of the inner cylinder", found, expected, goal},
           {"torque of the ring", simulation.bodyStates()[1].liquid.torque[2], expected, goal},
-          {"speed midway", speed, a * a / (b * b - a * a) * (b * b / r - r), goal}};
+          {"speed midway", speed, a * a / (b * b - a * a) * (b * b / r - r), 0.0}};
 }
 
 std::vector<Variant> variants(Extent extent) {
@@ -99,7 +100,7 @@ std::vector<Variant> variants(Extent extent) {
       if (!full && (row.ratio != 0.5 || offset > 0.0)) continue;
       Sweep sweep;
       sweep.base.cells_across = 10.0;
-      sweep.cells = full ? std::vector<double>{4, 6, 8, 10, 16} : std::vector<double>{4, 10};
+      sweep.cells = full ? std::vector<double>{4, 6, 8, 10, 16} : std::vector<double>{10, 16};
       sweep.fractions = full && offset == 0.0;
       char name[64];
       std::snprintf(name, sizeof name, "drag, diameter %g of the width%s", row.ratio, offset > 0.0 ? ", shifted" : "");
@@ -116,7 +117,8 @@ std::vector<Variant> variants(Extent extent) {
     sweep.fractions = full;
     char name[64];
     std::snprintf(name, sizeof name, "Taylor-Couette, radii 1:%g", 1.0 / ratio);
-    addSweep(name, sweep, [ratio](const Numerics& n, Meter& meter) { return torque(ratio, n, meter); }, out);
+    addSweep(
+        name, sweep, [ratio](const Numerics& n, Meter& meter) { return torque(ratio, n, meter); }, out);
   }
   return out;
 }

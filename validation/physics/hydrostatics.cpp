@@ -90,7 +90,8 @@ std::vector<Variant> variants(Extent extent) {
     Sweep sweep;
     sweep.base.cells_across = 6.0;
     std::snprintf(name, sizeof name, "floating box, density %g", density);
-    addSweep(name, sweep, [=](const Numerics& n, Meter& meter) { return draught(density, n, meter); }, out);
+    addSweep(
+        name, sweep, [=](const Numerics& n, Meter& meter) { return draught(density, n, meter); }, out);
   }
   return out;
 }

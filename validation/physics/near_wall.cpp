@@ -1,5 +1,6 @@
-// Stokes drag of a sphere that moves straight towards a wall: Brenner 1961, Chem. Eng. Sci. 16, 242. The other walls of the tank are
-// far off, and the flow between sphere and wall decays fast: at this distance they change the drag by less than 0.1 %.
+// Stokes drag of a sphere that moves straight towards a wall: Brenner 1961, Chem. Eng. Sci. 16, 242. The other walls of
+// the tank are far off, and the flow between sphere and wall decays fast: at this distance they change the drag by less
+// than 0.1 %.
 
 #include <cmath>
 
@@ -42,7 +43,8 @@ std::vector<Variant> variants(Extent extent) {
     sweep.cells = extent == Extent::kQuick ? std::vector<double>{4} : std::vector<double>{4, 6, 8, 10};
     char name[64];
     std::snprintf(name, sizeof name, "gap of %g radii", row.height - 1.0);
-    addSweep(name, sweep, [&row](const Numerics& numerics, Meter& meter) { return run(row, numerics, meter); }, out);
+    addSweep(
+        name, sweep, [&row](const Numerics& numerics, Meter& meter) { return run(row, numerics, meter); }, out);
   }
   return out;
 }

@@ -1,5 +1,5 @@
-// A box on a slope, dry and in liquid that is at rest: the angle at which it begins to slide, that it rests below it, and how
-// far it slides above it. The tank is tilted: gravity turns.
+// A box on a slope, dry and in liquid that is at rest: the angle at which it begins to slide, that it rests below it,
+// and how far it slides above it. The tank is tilted: gravity turns.
 
 #include <algorithm>
 #include <cmath>
@@ -52,11 +52,9 @@ std::vector<Measurement> run(bool wet, const Numerics& numerics, Meter& meter) {
   const double angle = kThreshold + 10.0;
   const Scene sliding = tilted(angle, false, numerics);
   const double a = 9.81 * (std::sin(angle * kDegree) - kFriction * std::cos(angle * kDegree));
-  const double seconds = 0.4, dt = sliding.time_step;
-  // Backward Euler with steps dt covers a dt^2 n (n + 1)/2.
+  const double seconds = 0.4;
   const double distance = slide(sliding, seconds, meter);
-  out.push_back({"distance slid 10 degrees above, m", distance, 0.5 * a * seconds * seconds, 0.0});
-  out.push_back({"the same, of backward Euler's, m", distance, 0.5 * a * seconds * (seconds + dt), 1e-3});
+  out.push_back({"distance slid 10 degrees above, m", distance, 0.5 * a * seconds * seconds, 1e-3});
   return out;
 }
 

@@ -51,7 +51,8 @@ std::vector<Variant> variants(Extent extent) {
     }
     char name[64];
     std::snprintf(name, sizeof name, "diameter %g of the side", row.ratio);
-    addSweep(name, sweep, [&row](const Numerics& numerics, Meter& meter) { return run(row, numerics, meter); }, out);
+    addSweep(
+        name, sweep, [&row](const Numerics& numerics, Meter& meter) { return run(row, numerics, meter); }, out);
   }
   return out;
 }

@@ -1,5 +1,5 @@
-// The shipped scene `drop` for a minute: bodies of several densities fall into a tank and stir it. How much liquid is left, how
-// much of it only because the surface was shifted to keep it, and how deep bodies sink into each other.
+// The shipped scene `drop` for a minute: bodies of several densities fall into a tank and stir it. How much liquid is
+// left, how much of it only because the surface was shifted to keep it, and how deep bodies sink into each other.
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,89 @@
+#pragma once
+// The step's linear system as `fast` solves it: all unknowns in one vector - U by components, p^, lattice.size each, the
+// twists of the free bodies times their scale, the impulses of the contacts in the border - and flexible GMRES with its
+// preconditioner: the liquid's (liquid_preconditioner.h), then an approximate Schur complement S of the bodies, their inertia
+// and their resistance to motion in this liquid, bordered by the contacts. S ages slowly and is kept while it serves.
+//
+// The rows of the divergence are multiplied by 2 N where that is more than one: so much of a stress does a divergence make, and
+// a residual that weighs it less lets velocities pass whose strain rates are wrong.
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "coupling/body_columns.h"
+#include "coupling/contact_states.h"
+#include "coupling/liquid_preconditioner.h"
+#include "coupling/step_solver.h"
+#include "solve/fgmres.h"
+
+namespace monolith {
+
+class PackedSystem {
+ public:
+  // The problem must outlive its use.
+  void set(StepProblem& problem);
+
+  const Lattice& lattice() const { return problem_->grid.lattice; }
+  std::size_t liquidSize() const { return 4 * lattice().size; }
+  Eigen::Index bodySize() const { return problem_->bodyUnknowns(); }
+  std::size_t size() const { return liquidSize() + static_cast<std::size_t>(bodySize()); }
+  std::size_t bytes() const;
+
+  // Between fields and vectors, without border; forces and velocities of bodies scale differently.
+  void packForces(const StepVector& v, std::vector<double>& x) const { pack(v, true, x); }
+  void packMotion(const StepVector& v, std::vector<double>& x) const { pack(v, false, x); }
+  void unpackMotion(const std::vector<double>& x, StepVector& v) const;
+
+  // Twists of the free bodies in m/s and rad/s; what is written for forces on them.
+  Eigen::VectorXd twists(const std::vector<double>& x) const;
+  void setForces(const Eigen::VectorXd& forces, std::vector<double>& rhs) const;
+
+  // Response of the twists to impulses as S has it.
+  Eigen::MatrixXd estimatedResponse() const;
+
+  // Contacts that take part, of rows with these compliances, and how much more than that each is given.
+  void setBorder(const ContactBorder& physical, const Eigen::VectorXd& compliance, double proximity);
+  const Eigen::VectorXd& borderCompliance() const { return border_compliance_; }
+
+  // x + one cycle of the preconditioner on its residual.
+  std::vector<double> improved(const std::vector<double>& rhs, const std::vector<double>& x);
+  KrylovReport solve(const std::vector<double>& rhs, std::vector<double>& x, double goal,
+                     const CoupledOptions& options, CoupledReport& report);
+
+  // S is renewed before it is next used if the solves took clearly more iterations than when it was made...
+  void judgeAge(const CoupledReport& report);
+  // ... or one failed.
+  void distrust() { stale_ = true; }
+  void updateSchur();
+
+ private:
+  void pack(const StepVector& v, bool forces, std::vector<double>& x) const;
+  template <class Real>
+  void apply(const FaceBlocks<Real>& faces, const CellBlocks<Real>& cells, const BodyColumns<Real>& columns,
+             std::vector<Real>& x, std::vector<Real>& y) const;
+  void precondition(const std::vector<float>& from, std::vector<float>& to);
+
+  StepProblem* problem_ = nullptr;
+  FaceBlocks<double> faces_;
+  FaceBlocks<float> faces_single_;
+  CellBlocks<double> cells_;
+  CellBlocks<float> cells_single_;
+  BodyColumns<double> columns_;
+  BodyColumns<float> columns_single_;
+  LiquidPreconditioner preconditioner_;
+  Fgmres krylov_;
+  double flux_weight_ = 1.0;
+  Eigen::VectorXd scale_;       // unknown = scale * twist
+  Eigen::MatrixXd bodies_;      // A_vv with inertia
+  Eigen::MatrixXd resistance_;  // of the free bodies, physical units
+  std::vector<int> resistance_of_;
+  double resistance_number_ = -1.0;
+  int fresh_iterations_ = 0;
+  bool stale_ = true;
+  Eigen::MatrixXd S_;
+  ContactBorder border_;
+  Eigen::VectorXd border_compliance_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> small_;  // S bordered by the contacts
+};
+
+}  // namespace monolith

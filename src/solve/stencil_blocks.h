@@ -1,0 +1,166 @@
+#pragma once
+// A stencil operator on a lattice, compressed: x-rows are cut into blocks of kLanes unknowns, and each block names a
+// pattern, the coefficients of its lanes. Blocks that look alike - everything away from boundaries, and most of what lies
+// along walls - share one pattern, so that the coefficients of a level stay in the first cache and only the fields are
+// streamed. Blocks without any unknown are left out; lanes without one have coefficients of zero.
+//
+// Coefficient q of lane i of pattern p: values[(p * Count + q) * kLanes + i].
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include <omp.h>
+
+#include "solve/lattice.h"
+
+namespace monolith {
+
+// Fewer blocks than this are not worth waking a second thread for.
+constexpr std::ptrdiff_t kBlocksWorthSharing = 1000;
+
+template <class Real, int Count>
+class StencilBlocks {
+ public:
+  static constexpr int kCount = Count;
+  using Row = std::array<std::vector<Real>, Count>;
+
+  // fill(component, row, width, out) writes the coefficients of `width` lanes from index `row` on; all zero: no unknown.
+  // `first[component]`: index along x of the first lane of a row.
+  template <class FillRow>
+  void build(const Lattice& l, const std::vector<int>& first, FillRow&& fill);
+
+  // f(component, place, values): for every block, shared among threads; f must write its own lanes only.
+  template <class BlockFunction>
+  void forEach(BlockFunction&& f) const {
+    const auto total = static_cast<std::ptrdiff_t>(blocks_.size());
+    if (total < kBlocksWorthSharing) {
+      run(0, total, f);
+      return;
+    }
+#pragma omp parallel
+    {
+      const std::ptrdiff_t threads = omp_get_num_threads(), mine = omp_get_thread_num();
+      run(total * mine / threads, total * (mine + 1) / threads, f);
+    }
+  }
+
+  std::size_t blocks() const { return blocks_.size(); }
+  std::size_t patterns() const { return values_.size() / (Count * kLanes); }
+  std::size_t bytes() const { return blocks_.size() * sizeof(Block) + values_.size() * sizeof(Real); }
+
+  // The same in another precision.
+  template <class To>
+  StencilBlocks<To, Count> converted() const {
+    StencilBlocks<To, Count> out;
+    out.blocks_.resize(blocks_.size());
+    std::memcpy(out.blocks_.data(), blocks_.data(), blocks_.size() * sizeof(Block));
+    out.segments_.resize(segments_.size());
+    std::memcpy(out.segments_.data(), segments_.data(), segments_.size() * sizeof(Segment));
+    out.values_.assign(values_.begin(), values_.end());
+    return out;
+  }
+
+ private:
+  template <class, int>
+  friend class StencilBlocks;
+
+  struct Block {
+    std::int32_t place, pattern;
+  };
+  struct Segment {
+    std::int32_t component, begin, end;
+  };
+  static constexpr std::size_t kSize = Count * kLanes;
+
+  template <class BlockFunction>
+  void run(std::ptrdiff_t begin, std::ptrdiff_t end, BlockFunction&& f) const {
+    for (const Segment& segment : segments_) {
+      const auto last = std::min<std::ptrdiff_t>(end, segment.end);
+      for (auto i = std::max<std::ptrdiff_t>(begin, segment.begin); i < last; ++i) {
+        f(segment.component, static_cast<std::ptrdiff_t>(blocks_[i].place), values_.data() + blocks_[i].pattern * kSize);
+      }
+    }
+  }
+
+  std::vector<Block> blocks_;      // by planes, within them by components
+  std::vector<Segment> segments_;  // blocks of one component in one plane
+  std::vector<Real> values_;
+};
+
+template <class Real, int Count>
+template <class FillRow>
+void StencilBlocks<Real, Count>::build(const Lattice& l, const std::vector<int>& first, FillRow&& fill) {
+  struct Plane {
+    std::vector<std::vector<Block>> blocks;
+    std::vector<Real> values;
+  };
+  const int components = static_cast<int>(first.size());
+  const int row_blocks = (l.n[0] + kLanes - 1) / kLanes;
+  std::vector<Plane> planes(l.faceEnd(2));
+#pragma omp parallel for schedule(static)
+  for (int k = 0; k < l.faceEnd(2); ++k) {
+    Plane& plane = planes[k];
+    plane.blocks.resize(components);
+    Row row;
+    for (auto& r : row) r.resize(row_blocks * kLanes);
+    std::vector<Real> candidate(kSize);
+    for (int component = 0; component < components; ++component) {
+      std::vector<std::int32_t> above(row_blocks, -1);  // patterns of the row before
+      std::int32_t last = -1;
+      for (int j = 0; j < l.faceEnd(1); ++j) {
+        const auto start = l.index(first[component], j, k);
+        fill(component, start, row_blocks * kLanes, row);
+        // Lanes beyond the row; along a periodic axis they hold images.
+        for (int lane = l.faceEnd(0) - first[component]; lane < row_blocks * kLanes; ++lane) {
+          for (auto& r : row) r[lane] = Real(0);
+        }
+        for (int block = 0; block < row_blocks; ++block) {
+          for (int q = 0; q < Count; ++q) {
+            std::copy_n(row[q].data() + block * kLanes, kLanes, candidate.data() + q * kLanes);
+          }
+          if (std::all_of(candidate.begin(), candidate.end(), [](Real value) { return value == Real(0); })) continue;
+          const auto same = [&](std::int32_t pattern) {
+            return pattern >= 0 &&
+                   std::memcmp(plane.values.data() + pattern * kSize, candidate.data(), kSize * sizeof(Real)) == 0;
+          };
+          std::int32_t pattern = same(above[block]) ? above[block] : same(last) ? last : -1;
+          if (pattern < 0) {
+            pattern = static_cast<std::int32_t>(plane.values.size() / kSize);
+            plane.values.insert(plane.values.end(), candidate.begin(), candidate.end());
+          }
+          above[block] = last = pattern;
+          plane.blocks[component].push_back({static_cast<std::int32_t>(start + block * kLanes), pattern});
+        }
+      }
+    }
+  }
+  blocks_.clear();
+  segments_.clear();
+  values_.clear();
+  std::unordered_map<std::string_view, std::int32_t> known;
+  std::vector<std::int32_t> number;
+  const auto text = [](const Real* values) {
+    return std::string_view(reinterpret_cast<const char*>(values), kSize * sizeof(Real));
+  };
+  for (const Plane& plane : planes) {
+    number.clear();
+    for (std::size_t p = 0; p < plane.values.size(); p += kSize) {
+      const auto [entry, fresh] = known.try_emplace(text(plane.values.data() + p), values_.size() / kSize);
+      if (fresh) values_.insert(values_.end(), plane.values.begin() + p, plane.values.begin() + p + kSize);
+      number.push_back(entry->second);
+    }
+    for (int component = 0; component < components; ++component) {
+      const auto begin = static_cast<std::int32_t>(blocks_.size());
+      for (const Block& block : plane.blocks[component]) blocks_.push_back({block.place, number[block.pattern]});
+      const auto end = static_cast<std::int32_t>(blocks_.size());
+      if (end > begin) segments_.push_back({component, begin, end});
+    }
+  }
+}
+
+}  // namespace monolith

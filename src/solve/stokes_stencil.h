@@ -1,0 +1,80 @@
+#pragma once
+// The operators of staggered_operator.h as compressed stencils (stencil_blocks.h), and the hot kernels of the fast solve.
+// staggered_operator.* is the plain form that tests hold them against.
+//
+// Row of the viscous block at a face of axis a, with b, c the other two axes in order and differences taken first, so that
+// large viscous numbers cost no digits of smooth fields (v, w: components b, c):
+//
+//   (A U)[f] = tie u[f] + n- (u[f] - u[f-a]) + n+ (u[f] - u[f+a])
+//            + sum over (v, b), (w, c):  s- (u[f] - u[f-b]) + s+ (u[f] - u[f+b])
+//                                       + x- (v[f] - v[f-a]) - x+ (v[f+b] - v[f+b-a])
+
+#include <array>
+#include <vector>
+
+#include "solve/stencil_blocks.h"
+#include "solve/staggered_operator.h"
+
+namespace monolith {
+
+// Places of the coefficients in a face's pattern.
+struct FaceStencil {
+  enum : int {
+    kTie,                            // mass + drag
+    kNormalLow, kNormalHigh,
+    kShearLow, kShearHigh = 5,       // of the pair with b; those with c follow each: kShearLow + 1, ...
+    kCrossLow = 7, kCrossHigh = 9,
+    kInverse = 11,                   // 1 over the smoothing diagonal
+    kTransfer,                       // share of a correction that comes from the coarser level: 1 - tie to solids/diagonal
+    kOpen,
+    kImpulse,                        // open over effective mass
+    kCount
+  };
+};
+
+// Places in a cell's pattern: open parts of its faces, zero in cells without pressure.
+struct CellStencil {
+  enum : int { kLow, kHigh = 3, kCount = 6 };
+};
+
+template <class Real>
+using FaceBlocks = StencilBlocks<Real, FaceStencil::kCount>;
+template <class Real>
+using CellBlocks = StencilBlocks<Real, CellStencil::kCount>;
+
+template <class Real>
+using Faces = std::array<Real*, 3>;
+
+// Compresses a level. transfer and conductance (open^2/effective mass) are those per face, as fields; either may be null.
+template <class Real, class From>
+void buildFaceBlocks(const StaggeredCoefficients<From>& c, FaceBlocks<Real>& out, FaceField<float>* transfer,
+                     FaceField<float>* conductance);
+template <class Real, class From>
+void buildCellBlocks(const StaggeredCoefficients<From>& c, CellBlocks<Real>& out);
+
+// The halos of all input that is read at neighbours must be filled. Nothing is written outside of blocks.
+
+// y = A U - C^T p
+template <class Real>
+void applyMomentum(const Lattice& l, const FaceBlocks<Real>& blocks, bool viscous, const Faces<const Real>& U,
+                   const Real* p, const Faces<Real>& y);
+// y = factor * g - C U on cells with pressure; g may be null: zero.
+template <class Real>
+void applyDivergence(const Lattice& l, const CellBlocks<Real>& blocks, const Faces<const Real>& U, Real factor,
+                     const Real* g, Real* y);
+
+// Chebyshev on A x = b: d = keep d + scale D^-1 (b - A x), next = x + d.
+void chebyshevStep(const Lattice& l, const FaceBlocks<float>& blocks, const Faces<const float>& x,
+                   const Faces<const float>& b, float keep, float scale, const Faces<float>& d,
+                   const Faces<float>& next);
+// The first step from x = 0: d = x = scale D^-1 b.
+void chebyshevStart(const FaceBlocks<float>& blocks, const Faces<const float>& b, float scale, const Faces<float>& d,
+                    const Faces<float>& x);
+// r = transfer (b - A x)
+void transferredResidual(const Lattice& l, const FaceBlocks<float>& blocks, const Faces<const float>& x,
+                         const Faces<const float>& b, const Faces<float>& r);
+// y = x + C^T p/effective mass
+void project(const Lattice& l, const FaceBlocks<float>& blocks, const Faces<const float>& x, const float* p,
+             const Faces<float>& y);
+
+}  // namespace monolith
