@@ -16,6 +16,8 @@
 // For a wave or a floating body this pair is neutrally stable up to omega dt = 2, as is backward Euler's x^n in the solve
 // and x^n + dt u^(n+1) after it.
 //
+// Steps in which liquid crosses most of a cell or more are of backward Euler, whatever was asked for.
+//
 // After a jump of the velocity (a start, a state that was set, an impact) a step has no past to continue: it is one of
 // backward Euler.
 
