@@ -3,6 +3,7 @@
 // residual b - A x is formed in double precision at each restart, the correction is found in single precision on
 // vectors half as wide. Keeping the directions P^-1 v beside the basis costs memory and pays: the operator sees their
 // rounding, where a correction P^-1 (V y) formed at the end carries that of a large, smooth pressure into the solution.
+// Where single precision ends short of the goal, the cycles that follow are in double; the preconditioner stays single.
 // Minimises |b - A x|_2 over each cycle; the residual that it reports is the recomputed one.
 
 #include <Eigen/Dense>
@@ -24,7 +25,8 @@ struct KrylovReport {
   double residual = 0.0;  // |b - A x|_2, recomputed
 };
 
-// What is to be solved. x may be changed where that doesn't change A x (halos).
+// What is to be solved. x may be changed where that doesn't change A x (halos). Entries that are no unknowns need not
+// be written: they are zero before.
 struct KrylovMaps {
   std::function<void(std::vector<double>& x, std::vector<double>& y)> apply;
   std::function<void(std::vector<float>& x, std::vector<float>& y)> apply_single;
@@ -40,13 +42,24 @@ class Fgmres {
   std::size_t bytes() const;
 
  private:
-  double residual(const KrylovMaps& maps, const std::vector<double>& b, std::vector<double>& x);
-  // One cycle on the residual in work_, until it is `goal` times as large; returns the coefficients of the directions.
-  Eigen::VectorXd cycle(const KrylovMaps& maps, double norm, double goal, int most);
+  template <class Real>
+  struct Space {
+    std::vector<std::vector<Real>> basis;               // V
+    std::vector<std::vector<Real>> directions;          // Z = P^-1 V
+    std::size_t clean_basis = 0, clean_directions = 0;  // of them: zero where this solve has no unknowns
+  };
 
-  std::vector<std::vector<float>> basis_;       // V
-  std::vector<std::vector<float>> directions_;  // Z = P^-1 V
+  double residual(const KrylovMaps& maps, const std::vector<double>& b, std::vector<double>& x);
+  // One cycle on the residual in work_, until it is `goal` times as large; adds to x. Returns the number of directions.
+  template <class Real>
+  int cycle(const KrylovMaps& maps, double norm, double goal, int most, Space<Real>& space, std::vector<double>& x);
+  void extend(const KrylovMaps& maps, std::vector<float>& v, std::vector<float>& z, std::vector<float>& w);
+  void extend(const KrylovMaps& maps, std::vector<double>& v, std::vector<double>& z, std::vector<double>& w);
+
+  Space<float> single_;
+  Space<double> double_;  // empty unless it was needed
   std::vector<double> work_;
+  std::vector<float> v_single_, z_single_;
 };
 
 }  // namespace monolith
