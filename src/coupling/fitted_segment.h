@@ -11,6 +11,7 @@
 namespace monolith {
 
 constexpr double kLeastTheta = 0.05;
+constexpr double kMostSag = 0.125;  // cell widths
 
 enum class FaceKind : std::uint8_t {
   kFluid,   // centre in the liquid: an unknown
@@ -50,7 +51,10 @@ inline FittedSegment fitSegment(FaceKind kind_a, double distance_a, FaceKind kin
     if (!(fluid > 0.0)) {
       s.theta = kLeastTheta;
     } else if (solid < 0.0) {
-      s.theta = std::clamp(surfaceCrossing(fluid, solid, sag), kLeastTheta, 1.0);
+      // Between two solids the distance has a kink, not a curvature: as much as a sphere of one cell's radius has, at
+      // most.
+      const double least = -0.125 * (fluid - solid);
+      s.theta = std::clamp(surfaceCrossing(fluid, solid, std::clamp(sag, least, kMostSag)), kLeastTheta, 1.0);
     }
   }
   return s;
