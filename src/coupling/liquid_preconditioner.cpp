@@ -30,6 +30,11 @@ float removeMean(const std::vector<std::ptrdiff_t>& cells, float* field) {
 
 }  // namespace
 
+// Where viscosity varies by many orders of magnitude, inertia counts in some cells whatever the largest number is.
+bool LiquidPreconditioner::projects() const {
+  return problem_->viscous_number <= kLargestProjected || !problem_->cell_viscosity.empty();
+}
+
 void LiquidPreconditioner::set(const StepProblem& problem, const FaceBlocks<float>& faces,
                                const CellBlocks<float>& cells, FaceField<float>&& transfer,
                                FaceField<float>&& conductance) {
@@ -48,7 +53,7 @@ void LiquidPreconditioner::set(const StepProblem& problem, const FaceBlocks<floa
   }
   if (problem.coefficients.viscous) {
     velocity_.set(l, faces, std::move(transfer), problem.coarse, levels,
-                  problem.viscous_number > kLargestProjected ? kViscousSmootherDegree : kSmootherDegree);
+                  projects() ? kSmootherDegree : kViscousSmootherDegree);
   }
   pressure_.set(l, problem.coefficients.has_pressure, std::move(conductance));
   g_.assign(l.size, 0.0f);
@@ -95,7 +100,7 @@ void LiquidPreconditioner::apply(const float* r, float flux_scale, float* x) {
     ++sealed;
   }
   if (sealed > 0) fillHalo(l, phi);
-  if (problem_->viscous_number <= kLargestProjected) {
+  if (projects()) {
     project(l, *faces_, u, phi, out);
   } else {
     for (int a = 0; a < 3; ++a) std::copy_n(u[a], size, out[a]);

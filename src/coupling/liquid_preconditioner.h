@@ -34,6 +34,8 @@ class LiquidPreconditioner {
   std::size_t bytes() const { return velocity_.bytes() + pressure_.bytes() + 2 * g_.size() * sizeof(float); }
 
  private:
+  bool projects() const;
+
   const StepProblem* problem_ = nullptr;
   const FaceBlocks<float>* faces_ = nullptr;
   const CellBlocks<float>* cells_ = nullptr;

@@ -1,5 +1,6 @@
 #include "solve/fgmres.h"
 
+#include <algorithm>
 #include <cmath>
 #include <type_traits>
 
@@ -16,6 +17,7 @@ constexpr double kFloor = 1e-4;
 constexpr int kPatience = 4;
 // One that ends at more than this times its goal was misled by its precision.
 constexpr double kLost = 2.0;
+constexpr double kPoorCycle = 0.1;
 // The estimate of a cycle may be a little off: aim lower than the goal.
 constexpr double kMargin = 0.9;
 constexpr std::ptrdiff_t kChunk = 512;  // terms of a sum in single precision
@@ -154,7 +156,16 @@ KrylovReport Fgmres::solve(const KrylovMaps& maps, const std::vector<double>& b,
   double_.clean_basis = double_.clean_directions = 0;
   work_.assign(b.size(), 0.0);
   z_single_.assign(double_.basis.empty() ? 0 : b.size(), 0.0f);
-  report.residual = report.initial_residual = residual(maps, b, x);
+  report.residual = residual(maps, b, x);
+  const double none = std::sqrt(dot(b, b));
+  if (report.residual > none) {
+    // A guess that is worse than none: what it left wrong, where viscosities have changed by orders of magnitude, would
+    // have to be taken back first.
+    std::fill(x.begin(), x.end(), 0.0);
+    work_ = b;
+    report.residual = none;
+  }
+  report.initial_residual = report.residual;
   report.converged = report.residual <= options.absolute_tolerance;
   bool single = true;
   while (!report.converged && report.iterations < options.maximum_iterations && std::isfinite(report.residual)) {
@@ -167,8 +178,11 @@ KrylovReport Fgmres::solve(const KrylovMaps& maps, const std::vector<double>& b,
     const double last = report.residual;
     report.residual = residual(maps, b, x);
     report.converged = report.residual <= options.absolute_tolerance;
-    if (report.converged || used == most) continue;
-    if (single) {
+    if (report.converged) continue;
+    if (used == most) {
+      // A whole cycle for little: perhaps it is the precision.
+      single = single && report.residual <= kPoorCycle * last;
+    } else if (single) {
       // It believed that it had arrived, or gave up: what is left is its round-off.
       single = report.residual <= kLost * goal * last;
     } else if (report.residual > 0.9 * last) {

@@ -154,6 +154,7 @@ TEST(Simulation, ActionIsReaction) {
   for (bool& periodic : scene.tank.periodic) periodic = true;
   scene.gravity.setZero();
   scene.solver.tolerance = 1e-10;
+  scene.solver.time_stepping = TimeStepping::kBackwardEuler;  // one solve, nothing moves before it
   BodyDescription body = sphereBody("ball", 0.03, 700.0, {0.08, 0.08, 0.08});
   body.velocity = Eigen::Vector3d(0.01, 0.02, -0.03);
   scene.bodies.push_back(body);
