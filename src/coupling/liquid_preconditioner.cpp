@@ -32,7 +32,7 @@ float removeMean(const std::vector<std::ptrdiff_t>& cells, float* field) {
 
 // Where viscosity varies by many orders of magnitude, inertia counts in some cells whatever the largest number is.
 bool LiquidPreconditioner::projects() const {
-  return problem_->viscous_number <= kLargestProjected || !problem_->cell_viscosity.empty();
+  return problem_->viscous_number <= kLargestProjected;
 }
 
 void LiquidPreconditioner::set(const StepProblem& problem, const FaceBlocks<float>& faces,

@@ -23,7 +23,7 @@ void PackedSystem::set(StepProblem& problem) {
   buildCellBlocks(p.coefficients, cells_);
   faces_single_ = faces_.converted<float>();
   cells_single_ = cells_.converted<float>();
-  flux_weight_ = p.cell_viscosity.empty() ? std::max(1.0, 2.0 * p.viscous_number) : 1.0;
+  flux_weight_ = std::max(1.0, 2.0 * p.viscous_number);
   preconditioner_.set(p, faces_single_, cells_single_, std::move(transfer), std::move(conductance));
   scale_.resize(bodySize());
   for (std::size_t i = 0; i < p.free.size(); ++i) scale_.segment<6>(6 * i) = p.twist_scale[i];
