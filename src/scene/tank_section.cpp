@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 constexpr double kCellTolerance = 1e-6;  // of a cell
 constexpr int kLeastCells = 4;           // along an axis
-constexpr double kBytesPerCell = 600.0;  // of all fields, multigrid levels and particles together
+constexpr double kBytesPerCell = 2500.0;  // at the peak of a step, viscous: ./tank bench
 
 char axisName(int axis) { return "xyz"[axis]; }
 
