@@ -161,7 +161,7 @@ TEST_F(SceneFile, EachViolationNamesLineKeyValueAndExpectation) {
       {tank("  size: [1, 1]\n  cell_width: 0.1\n"), {"value [1, 1]"}},
       {tank("  size: [1, 1.05, 1]\n  cell_width: 0.1\n"), {"along y", "1 or 1.1 m"}},
       {tank("  size: [1, 1, 0.3]\n  cell_width: 0.1\n"), {"at least 4 cells", "along z", "not 3"}},
-      {tank("  size: [100, 100, 100]\n  cell_width: 0.001\n"), {"1e+15 cells need about 6e+08 GB, this machine has"}},
+      {tank("  size: [100, 100, 100]\n  cell_width: 0.001\n"), {"1e+15 cells need about 2.5e+09 GB, this machine has"}},
       {tank("  size: [1, 1, 1]\n  cell_width: 0.1\n  periodic: true\n"), {"tank.periodic: value true"}},
       {tank("  size: [1, 1, 1]\n  cell_with: 0.1\n"), {"scene.yaml:3: tank.cell_with: unknown key", "\"cell_width\""}},
       {kTank + "liqid: {}\n", {"scene.yaml:2: liqid: unknown key", "\"liquid\""}},
