@@ -1,19 +1,13 @@
 #include <cstdio>
-#include <ctime>
 
 #include "cases.h"
+#include "framework/meter.h"
 #include "simulation/simulation.h"
 
 namespace monolith {
 namespace {
 
 constexpr int kSteps = 10;
-
-double cpuSeconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 Scene start(double fill, double viscosity) {
   Scene scene;
@@ -62,8 +56,8 @@ bool measure(const char* text, const Scene& scene) {
 
 bool runBlocks() {
   std::printf("32^3 cells, one thread, means per sub-step in ms (CPU: of all stages)\n");
-  std::printf("%-44s %9s %9s %8s %8s %9s %6s   %s\n", "scene", "advection", "geometry", "solve", "surface", "CPU", "iter",
-              "what was modelled");
+  std::printf("%-44s %9s %9s %8s %8s %9s %6s   %s\n", "scene", "advection", "geometry", "solve", "surface", "CPU",
+              "iter", "what was modelled");
   const BodyDescription ball = sphereBody("ball", 0.04, 2500.0, {0.15, 0.16, 0.1});
   const BodyDescription box = boxBody("box", {0.1, 0.08, 0.06}, 2500.0, {0.2, 0.16, 0.03});
   bool good = true;

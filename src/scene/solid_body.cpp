@@ -36,4 +36,17 @@ BodyDescription boxBody(const std::string& name, const Eigen::Vector3d& size, do
   return body;
 }
 
+BodyDescription cylinderBody(const std::string& name, double radius, double length, double density,
+                             const Eigen::Vector3d& position) {
+  Shape shape;
+  shape.kind = Shape::Kind::kCylinder;
+  shape.radius = radius;
+  shape.length = length;
+  shape.name = name;
+  BodyDescription body = solidBody(shape, density, position);
+  const double across = (3.0 * radius * radius + length * length) / 12.0;
+  body.inertia_Bcm = body.mass * Eigen::Vector3d(across, across, 0.5 * radius * radius).asDiagonal();
+  return body;
+}
+
 }  // namespace monolith

@@ -81,8 +81,7 @@ BodyPlan planEuler(const std::vector<RigidBody>& bodies, const Vector3d& gravity
 
 BodyPlan planSecondOrder(const std::vector<RigidBody>& bodies, const Vector3d& gravity,
                          const std::vector<Wrench>& wrenches, const BodyPast& past, double time,
-                         const StepWeights& weights, const std::vector<char>& closing,
-                         std::vector<Contact>& contacts) {
+                         const StepWeights& weights, const std::vector<char>& closing, std::vector<Contact>& contacts) {
   const double dt = weights.dt;
   BodyPlan plan;
   plan.bodies = bodies;

@@ -32,17 +32,17 @@ struct BodyPast {
   std::vector<Wrench> contact;         // mean
 };
 
-// Second order. Bodies that are closing stay where they are until they are solved for. Points of the contacts go with the
-// bodies.
+// Second order. Bodies that are closing stay where they are until they are solved for. Points of the contacts go with
+// the bodies.
 BodyPlan planSecondOrder(const std::vector<RigidBody>& bodies, const Eigen::Vector3d& gravity,
                          const std::vector<Wrench>& wrenches, const BodyPast& past, double time,
-                         const StepWeights& weights, const std::vector<char>& closing,
-                         std::vector<Contact>& contacts);
+                         const StepWeights& weights, const std::vector<char>& closing, std::vector<Contact>& contacts);
 
 // Twists as solved for; moves the bodies.
 void finishEuler(const std::vector<Vector6d>& twists, double dt, std::vector<RigidBody>& bodies);
-// Closing bodies move by their new twist, for which non-penetration was solved; where some are to rebound, also by as much
-// of the old one, at most half, as leaves the contacts open: so that they do it from the surface, not from above it.
+// Closing bodies move by their new twist, for which non-penetration was solved; where some are to rebound, also by as
+// much of the old one, at most half, as leaves the contacts open: so that they do it from the surface, not from above
+// it.
 void finishSecondOrder(const BodyPlan& plan, const std::vector<Contact>& contacts, bool rebound,
                        const std::vector<Vector6d>& twists, double dt, std::vector<RigidBody>& bodies);
 

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kLeastSlope = 0.25;  // of the level set, per cell
 
-// Faces in air next to known ones go on with the slope that the velocity has in the liquid, mean over the directions that
-// tell one: held constant instead, velocity at the surface would be that of up to half a cell below it.
+// Faces in air next to known ones go on with the slope that the velocity has in the liquid, mean over the directions
+// that tell one: held constant instead, velocity at the surface would be that of up to half a cell below it.
 void continueIntoAir(const Lattice& l, const SolidFractions& solids, FaceField<double>& velocity,
                      std::array<std::vector<std::uint8_t>, 3>& known) {
   for (int a = 0; a < 3; ++a) {
@@ -77,6 +77,16 @@ void setVelocity(const MacGrid& grid, const std::function<Eigen::Vector3d(const 
     }
     fillHalo(l, faces[a]);
   }
+}
+
+double largestSpeed(const FaceField<double>& velocity) {
+  double sum = 0.0;
+  for (const auto& field : velocity) {
+    double largest = 0.0;
+    for (const double u : field) largest = std::max(largest, std::abs(u));
+    sum += largest * largest;
+  }
+  return std::sqrt(sum);
 }
 
 void completeVelocity(const MacGrid& grid, const StepProblem& problem, const SolidFractions& solids,

@@ -17,6 +17,9 @@ MacGrid makeGrid(const TankDescription& tank, const LiquidDescription& liquid);
 void setVelocity(const MacGrid& grid, const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& velocity,
                  FaceField<double>& faces);
 
+// Norm of the largest components of a velocity at faces: no point of the liquid is faster.
+double largestSpeed(const FaceField<double>& velocity);
+
 // Marks the faces whose velocity is known, gives faces inside bodies the bodies' velocity where it sticks to them, and
 // spreads the rest into solids and air. `usable`: faces that may be known at all; nullptr: all.
 void completeVelocity(const MacGrid& grid, const StepProblem& problem, const SolidFractions& solids,

@@ -14,7 +14,7 @@ constexpr double kFirstForcing = 1e-2;  // relative residual of the first linear
 constexpr double kForcing = 0.02;       // ... of the others, relative to what the viscosity left before
 // Round-off of a solve in which viscosities differ by orders of magnitude: no residual below it is asked for.
 constexpr double kLeastTolerance = 1e-9;
-constexpr double kGrowth = 3.0;         // of the residual over its least so far: the acceleration has gone astray
+constexpr double kGrowth = 3.0;  // of the residual over its least so far: the acceleration has gone astray
 
 // Extrapolation knows no limits; the law does.
 void clampField(const ViscosityLaw& law, double reference, ViscosityField& field) {
@@ -42,7 +42,8 @@ ViscosityLaw makeViscosityLaw(const LiquidDescription& liquid) {
                                            r.minimum_viscosity > 0.0 ? r.minimum_viscosity : r.consistency,
                                            r.maximum_viscosity > 0.0 ? r.maximum_viscosity : bingham_most);
     }
-    case RheologyDescription::Law::kNewtonian: break;
+    case RheologyDescription::Law::kNewtonian:
+      break;
   }
   return ViscosityLaw::newtonian(liquid.dynamic_viscosity);
 }

@@ -18,8 +18,8 @@ ViscosityLaw makeViscosityLaw(const LiquidDescription& liquid);
 
 struct RheologyReport {
   int iterations = 0;
-  double residual = 0.0;             // what following the viscosity leaves of the step's equations, relative
-  double typical_viscosity = 0.0;    // Pa s, geometric mean over the liquid: the next step's reference
+  double residual = 0.0;           // what following the viscosity leaves of the step's equations, relative
+  double typical_viscosity = 0.0;  // Pa s, geometric mean over the liquid: the next step's reference
 };
 
 // One coupled solve with the options given; its guess and its result are the state of the iteration.

@@ -184,7 +184,10 @@ void Simulation::setBodyState(int body, const Eigen::Isometry3d& X_WB, const Eig
 void Simulation::setLiquidVelocity(const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& velocity) {
   FaceField<double> faces;
   setVelocity(impl_->grid, velocity, faces);
-  impl_->state.coupled.velocity = std::move(faces);
+  SimulationState& state = impl_->state;
+  state.coupled.velocity = std::move(faces);
+  state.liquid_speed = largestSpeed(state.coupled.velocity);
+  state.euler_steps = kStepsAfterSet;
 }
 
 std::vector<SurfacePoint> Simulation::surfacePoints() const {

@@ -56,8 +56,8 @@ class Simulation {
   void setBodyState(int body, const Eigen::Isometry3d& X_WB, const Eigen::Vector3d& velocity,
                     const Eigen::Vector3d& angular_velocity);
 
-  // Gives the liquid, wherever it is, this velocity (m/s) of a point in W; of what diverges the next step takes the divergence.
-  // Throws std::invalid_argument unless finite.
+  // Gives the liquid, wherever it is, this velocity (m/s) of a point in W; of what diverges the next step takes the
+  // divergence. Throws std::invalid_argument unless finite.
   void setLiquidVelocity(const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& velocity);
 
   // Points of the free surface, about one for each cell that it crosses; empty without a free surface.

@@ -16,7 +16,8 @@
 
 namespace monolith {
 
-// Steps of backward Euler after a state that was set: one in which the velocity jumps, and one for the next to continue.
+// Steps of backward Euler after a state that was set: one in which the velocity jumps, and one for the next to
+// continue.
 constexpr int kStepsAfterSet = 2;
 
 // Adds the time until it goes out of scope.
@@ -38,12 +39,12 @@ struct SimulationState {
   std::vector<FreeSurface> surface;  // exactly one; a vector because it has no default
   CoupledState coupled;
   std::array<std::vector<std::uint8_t>, 3> known;
-  FaceField<double> acceleration;           // m/s^2, of the liquid's particles, mean over the last sub-step
-  std::vector<Vector6d> body_acceleration;  // likewise
+  FaceField<double> acceleration;                 // m/s^2, of the liquid's particles, mean over the last sub-step
+  std::vector<Vector6d> body_acceleration;        // likewise
   std::vector<Wrench> mean_liquid, mean_contact;  // over the last output step
-  double liquid_speed = 0.0;                // m/s, no component of the velocity is larger
-  double last_dt = 0.0;                     // s, of the last sub-step
-  int euler_steps = kStepsAfterSet;         // sub-steps of backward Euler that are due
+  double liquid_speed = 0.0;                      // m/s, no component of the velocity is larger
+  double last_dt = 0.0;                           // s, of the last sub-step
+  int euler_steps = kStepsAfterSet;               // sub-steps of backward Euler that are due
   std::size_t substeps = 0;
   bool started = false;
   double typical_viscosity = 0.0;  // Pa s, of a non-Newtonian liquid
@@ -94,7 +95,7 @@ struct Simulation::Impl {
   BodyPlan plan;               // of the last solve
   SolidFractions step_solids;  // as the last solve used them
   std::vector<FreeSurface> step_surface;
-  FaceField<double> carried;   // velocity that the liquid at each face had at the start of the step
+  FaceField<double> carried;  // velocity that the liquid at each face had at the start of the step
   CoupledSystem system;
   ContactLaws laws;
   ViscosityLaw viscosity_law;

@@ -11,16 +11,16 @@ enum class SolveStatus { kNotRun, kConverged, kNotConverged, kInconsistent };
 
 const char* toString(SolveStatus status);
 
-struct StageTimes {        // s of wall time, summed over the sub-steps
+struct StageTimes {  // s of wall time, summed over the sub-steps
   double advection = 0.0;
   double contact = 0.0;
-  double geometry = 0.0;   // fractions, coefficients, multigrid levels
+  double geometry = 0.0;  // fractions, coefficients, multigrid levels
   double solve = 0.0;
   double surface = 0.0;
   double total = 0.0;
 };
 
-struct ModelChoice {       // what the last sub-step modelled, chosen from the state
+struct ModelChoice {  // what the last sub-step modelled, chosen from the state
   bool liquid = false;
   bool viscosity = false;
   bool non_newtonian = false;
@@ -28,14 +28,14 @@ struct ModelChoice {       // what the last sub-step modelled, chosen from the s
   int time_order = 1;      // of its time stepping; 1 after an impact or a start also where 2 was asked for
   int coupled_bodies = 0;  // bodies with at least one coupling row
   int contacts = 0;
-  bool friction = false;   // at least one of the contacts has a friction coefficient
+  bool friction = false;  // at least one of the contacts has a friction coefficient
 };
 
 struct StepReport {
   SolveStatus status = SolveStatus::kNotRun;
-  std::string message;             // empty if all went well
-  long step = 0;                   // output steps since the start
-  double time = 0.0;               // s, simulated, after the step
+  std::string message;  // empty if all went well
+  long step = 0;        // output steps since the start
+  double time = 0.0;    // s, simulated, after the step
   int substeps = 0;
   int iterations = 0;              // Krylov, summed over the sub-steps
   int liquid_solves = 0;           // coupled linear solves, summed over the sub-steps
@@ -49,8 +49,8 @@ struct StepReport {
   double volume_correction = 0.0;  // m^3, signed, that the surface was corrected by in this step
   double kinetic_energy = 0.0;     // J, liquid and bodies
   Eigen::Vector3d liquid_momentum = Eigen::Vector3d::Zero();  // kg m/s, in W
-  double potential_energy = 0.0;   // J, liquid and bodies, zero at the world's origin
-  double penetration = 0.0;        // m, deepest
+  double potential_energy = 0.0;                              // J, liquid and bodies, zero at the world's origin
+  double penetration = 0.0;                                   // m, deepest
   ModelChoice model;
   StageTimes times;
 

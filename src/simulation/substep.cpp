@@ -14,8 +14,8 @@ constexpr double kFirstTolerance = 1e-4;
 constexpr double kClosingTolerance = 1e-3;  // of a cell: a gap that closes by less within a step is no impact
 // After the step of an impact one of backward Euler, for the next to continue.
 constexpr int kStepsAfterImpact = 1;
-// Where liquid crosses more cells in a step, the accelerations of particles are no longer resolved, and going on with them
-// is unstable where velocity jumps within a cell (a lid's edge).
+// Where liquid crosses more cells in a step, the accelerations of particles are no longer resolved, and going on with
+// them is unstable where velocity jumps within a cell (a lid's edge).
 constexpr double kMostCells = 0.75;
 
 }  // namespace
@@ -145,13 +145,7 @@ void Simulation::Impl::takeMeans(const StepWeights& w, const std::vector<Wrench>
 }
 
 void Simulation::Impl::moveLiquid(const StepWeights& w, const FaceField<double>& velocity_before, StepReport& step) {
-  double speed = 0.0;
-  for (int a = 0; a < 3; ++a) {
-    double largest = 0.0;
-    for (const double u : state.coupled.velocity[a]) largest = std::max(largest, std::abs(u));
-    speed += largest * largest;
-  }
-  step.maximum_speed = std::sqrt(speed);
+  step.maximum_speed = largestSpeed(state.coupled.velocity);
   // As far as a trajectory of this step reaches, and no further than the tank.
   const int most = *std::max_element(grid.lattice.n.begin(), grid.lattice.n.end());
   const double reach = std::ceil(std::max(step.maximum_speed, bodySpeed()) * w.dt / grid.h);
@@ -176,7 +170,8 @@ void Simulation::Impl::moveLiquid(const StepWeights& w, const FaceField<double>&
   if (w.order == 2) {
     FaceField<double> mean = velocity_before;
     for (int a = 0; a < 3; ++a) {
-      for (std::size_t i = 0; i < grid.lattice.size; ++i) mean[a][i] = 0.5 * (mean[a][i] + state.coupled.velocity[a][i]);
+      for (std::size_t i = 0; i < grid.lattice.size; ++i)
+        mean[a][i] = 0.5 * (mean[a][i] + state.coupled.velocity[a][i]);
     }
     state.surface[0].advect(mean, w.dt, std::max(step.maximum_speed, state.liquid_speed));
     // The poses of the solve are those of now but for dt^2/2 times the acceleration.

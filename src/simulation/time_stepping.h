@@ -1,20 +1,20 @@
 #pragma once
-// Time stepping, of liquid and bodies alike. With the mean acceleration A^n that a particle of liquid or a body had over
-// the last step, and f what acts on it at the end of this one (pressure, viscosity, gravity):
+// Time stepping, of liquid and bodies alike. With the mean acceleration A^n that a particle of liquid or a body had
+// over the last step, and f what acts on it at the end of this one (pressure, viscosity, gravity):
 //
 //   u^(n+1) = u^n(x_d) + dt ((1 - b) A^n(x_d) + b f^(n+1)),      A^(n+1) = (u^(n+1) - u^n(x_d))/dt
 //
 // b = 1: backward Euler. b = (1 + r)/(1 + 2 r), r = dt/dt_last: the second-order backward differentiation formula with
-// variable steps (BDF2; Hairer & Norsett & Wanner, Solving ODEs I, III.5), x_d the foot of the particle's trajectory. The
-// solve is the same with b dt in place of dt: L-stable, so that stiff viscosity is damped at once.
+// variable steps (BDF2; Hairer & Norsett & Wanner, Solving ODEs I, III.5), x_d the foot of the particle's trajectory.
+// The solve is the same with b dt in place of dt: L-stable, so that stiff viscosity is damped at once.
 //
-// Bodies: momentum and angular momentum, gravity and wrenches from outside held over the step; (1 - b) of the liquid's mean
-// wrench on the body is carried over, which therefore is reported as the mean over the step: with it and with that of
-// the contacts m (v^(n+1) - v^n)/dt = sum of wrenches + m g holds exactly.
+// Bodies: momentum and angular momentum, gravity and wrenches from outside held over the step; (1 - b) of the liquid's
+// mean wrench on the body is carried over, which therefore is reported as the mean over the step: with it and with that
+// of the contacts m (v^(n+1) - v^n)/dt = sum of wrenches + m g holds exactly.
 //
-// Where bodies and surface are in the solve: with BDF2 at x^n + dt u^n, corrected to x^n + dt (u^n + u^(n+1))/2 after it.
-// For a wave or a floating body this pair is neutrally stable up to omega dt = 2, as is backward Euler's x^n in the solve
-// and x^n + dt u^(n+1) after it.
+// Where bodies and surface are in the solve: with BDF2 at x^n + dt u^n, corrected to x^n + dt (u^n + u^(n+1))/2 after
+// it. For a wave or a floating body this pair is neutrally stable up to omega dt = 2, as is backward Euler's x^n in the
+// solve and x^n + dt u^(n+1) after it.
 //
 // Steps in which liquid crosses most of a cell or more are of backward Euler, whatever was asked for.
 //

@@ -66,11 +66,11 @@ int run(const Options& options) {
   }
   const bool json_to_output = options.json == "-";
   std::FILE* table = json_to_output ? stderr : stdout;
-  const std::string commit = commitOf(MONOLITH_SOURCE_DIR), machine = machineName();
+  const Origin origin = findOrigin();
   std::map<int, double> stream;
   for (const int threads : options.threads) {
     stream[threads] = inChild<double>([&] { return streamBandwidth(threads); });
-    std::fprintf(table, "%s, commit %s: %.1f GB/s with %d thread%s\n", machine.c_str(), commit.c_str(),
+    std::fprintf(table, "%s, commit %s: %.1f GB/s with %d thread%s\n", origin.machine.c_str(), origin.commit.c_str(),
                  1e-9 * stream[threads], threads, threads == 1 ? "" : "s");
   }
   printHead(table);
@@ -91,7 +91,7 @@ int run(const Options& options) {
     good = good && row.steps.good;
     printRow(row, table);
     std::fflush(table);
-    const std::string line = toJson(row, commit, machine) + "\n";
+    const std::string line = toJson(row, origin) + "\n";
     if (json_to_output) std::cout << line << std::flush;
     if (file.is_open()) file << line << std::flush;
   }

@@ -10,11 +10,11 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <ctime>
 #include <fstream>
 #include <limits>
 
 #include "coupling/coupled_system.h"
+#include "framework/meter.h"
 #include "rigid/contact.h"
 #include "simulation/contact_laws.h"
 #include "simulation/liquid_state.h"
@@ -30,12 +30,6 @@ constexpr double kLoosest = 0.1, kTightest = 1e-9;
 const double kGrade = std::sqrt(10.0);  // between the tolerances that are tried
 
 double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-double cpuSeconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 // A line of /proc/self/status, in bytes.
 double memory(const std::string& key) {

@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "framework/runner.h"
+
 namespace monolith::bench {
 namespace {
 
@@ -57,18 +59,6 @@ SolverName solver(const std::string& option, const std::string& text) {
 }
 
 }  // namespace
-
-const char* toString(SolverName name) {
-  switch (name) {
-    case SolverName::kDirect:
-      return "direct";
-    case SolverName::kReference:
-      return "reference";
-    case SolverName::kFast:
-      break;
-  }
-  return "fast";
-}
 
 const char* usage() {
   return R"(usage: bench [--sizes N,...] [--threads T,...] [--viscous-number X,...] [--bodies B,...] [--contacts C,...]

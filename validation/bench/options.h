@@ -30,6 +30,4 @@ const char* usage();
 // Throws std::invalid_argument: option, value and what was expected.
 Options parse(int argc, char** argv);
 
-const char* toString(SolverName name);
-
 }  // namespace monolith::bench

@@ -1,48 +1,11 @@
 #include "report.h"
 
 #include <cmath>
-#include <fstream>
-#include <sstream>
-#include <thread>
 
-#include "options.h"
+#include "framework/json_object.h"
+#include "framework/runner.h"
 
 namespace monolith::bench {
-namespace {
-
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  }
-  return out + "\"";
-}
-
-class JsonObject {
- public:
-  void add(const std::string& key, double value) {
-    std::ostringstream text;
-    text.precision(6);
-    if (std::isfinite(value)) {
-      text << value;
-    } else {
-      text << "null";
-    }
-    addRaw(key, text.str());
-  }
-  void add(const std::string& key, const std::string& value) { addRaw(key, quoted(value)); }
-  void addRaw(const std::string& key, const std::string& value) {
-    text_ += (text_.empty() ? "" : ", ") + quoted(key) + ": " + value;
-  }
-  std::string str() const { return "{" + text_ + "}"; }
-
- private:
-  std::string text_;
-};
-
-}  // namespace
-
 void printHead(std::FILE* to) {
   std::fprintf(
       to,
@@ -75,7 +38,7 @@ void printRow(const Row& row, std::FILE* to) {
   }
 }
 
-std::string toJson(const Row& row, const std::string& commit, const std::string& machine) {
+std::string toJson(const Row& row, const Origin& origin) {
   const Case& c = row.wanted;
   const StepFigures& s = row.steps;
   const bool good = row.accuracy.good && s.good;
@@ -93,9 +56,9 @@ std::string toJson(const Row& row, const std::string& commit, const std::string&
   out.add("bodies", s.bodies);
   out.add("contacts", s.contacts);
   out.add("fill", c.fill);
-  out.add("solver", std::string(toString(c.solver)));
+  out.add("solver", toString(c.solver));
   out.addRaw("good", good ? "true" : "false");
-  out.add("message", std::string(row.accuracy.good ? s.message : row.accuracy.message));
+  out.add("message", row.accuracy.good ? s.message : row.accuracy.message);
   out.add("tolerance", row.accuracy.tolerance);
   out.add("true_error", row.accuracy.error);
   out.add("ms_per_step", good ? s.ms_per_step : NAN);
@@ -114,31 +77,9 @@ std::string toJson(const Row& row, const std::string& commit, const std::string&
   out.add("against_ms", row.against_ms > 0.0 ? row.against_ms : NAN);
   out.add("against_error", row.against_ms > 0.0 ? row.against_error : NAN);
   out.add("against_tolerance", row.against_ms > 0.0 ? row.against_tolerance : NAN);
-  out.add("commit", commit);
-  out.add("machine", machine);
+  out.add("commit", origin.commit);
+  out.add("machine", origin.machine);
   return out.str();
-}
-
-std::string commitOf(const std::string& folder) {
-  std::string out;
-  if (std::FILE* git = popen(("git -C '" + folder + "' describe --always --dirty 2>/dev/null").c_str(), "r")) {
-    char text[100];
-    if (std::fgets(text, sizeof(text), git) != nullptr) out = text;
-    pclose(git);
-  }
-  while (!out.empty() && out.back() == '\n') out.pop_back();
-  return out.empty() ? "unknown" : out;
-}
-
-std::string machineName() {
-  std::ifstream info("/proc/cpuinfo");
-  std::string line, model = "unknown processor";
-  while (std::getline(info, line)) {
-    if (line.compare(0, 10, "model name") != 0) continue;
-    model = line.substr(line.find(':') + 2);
-    break;
-  }
-  return model + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores";
 }
 
 }  // namespace monolith::bench

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <string>
 
+#include "framework/run_record.h"
 #include "measure.h"
 
 namespace monolith::bench {
@@ -25,9 +26,6 @@ struct Row {
 
 void printHead(std::FILE* to);
 void printRow(const Row& row, std::FILE* to);
-std::string toJson(const Row& row, const std::string& commit, const std::string& machine);
-
-std::string commitOf(const std::string& folder);
-std::string machineName();
+std::string toJson(const Row& row, const Origin& origin);
 
 }  // namespace monolith::bench

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/solid_body.h"
+
 namespace monolith::bench {
 namespace {
 
@@ -12,22 +14,6 @@ constexpr double kTimeStep = 0.01;       // s
 constexpr double kFriction = 0.3;
 // Off the grid's symmetry, m.
 const Eigen::Vector3d kOffset(0.0131, -0.0073, 0.0057);
-
-BodyDescription makeBody(const std::string& name, Shape::Kind kind, double width, const Eigen::Vector3d& position) {
-  Shape shape;
-  shape.kind = kind;
-  shape.radius = 0.5 * width;
-  shape.box_size.setConstant(width);
-  shape.name = name;
-  BodyDescription body;
-  body.name = name;
-  body.shapes = {shape};
-  body.mass = kBodyDensity * volume(shape);
-  const double gyration2 = kind == Shape::Kind::kSphere ? 0.1 * width * width : width * width / 6.0;
-  body.inertia_Bcm = body.mass * gyration2 * Eigen::Matrix3d::Identity();
-  body.X_WB.translation() = position;
-  return body;
-}
 
 // Boxes (four contact points) and spheres (one) in columns of two; returns the height that they take up.
 double addResting(int contacts, std::vector<BodyDescription>& bodies) {
@@ -42,8 +28,9 @@ double addResting(int contacts, std::vector<BodyDescription>& bodies) {
     const Eigen::Vector3d position((column % along + 0.5) / along, (column / along + 0.5) / along,
                                    (level + 0.5) * width);
     const Eigen::Vector3d aside(kOffset[0], kOffset[1], 0.0);
-    bodies.push_back(makeBody("resting_" + std::to_string(i), i < boxes ? Shape::Kind::kBox : Shape::Kind::kSphere,
-                              width, position + aside));
+    const std::string name = "resting_" + std::to_string(i);
+    bodies.push_back(i < boxes ? boxBody(name, Eigen::Vector3d::Constant(width), kBodyDensity, position + aside)
+                               : sphereBody(name, 0.5 * width, kBodyDensity, position + aside));
   }
   return (count > columns ? 2.0 : 1.0) * width;
 }
@@ -57,7 +44,7 @@ void addFree(int count, double low, double high, std::vector<BodyDescription>& b
     const Eigen::Vector3d position((i % along + 0.5) / along, (i / along % along + 0.5) / along,
                                    low + (i / (along * along) + 0.5) * spacing_z);
     bodies.push_back(
-        makeBody("free_" + std::to_string(i), Shape::Kind::kSphere, width, position + 0.1 * width / 0.25 * kOffset));
+        sphereBody("free_" + std::to_string(i), 0.5 * width, kBodyDensity, position + 0.1 * width / 0.25 * kOffset));
   }
 }
 

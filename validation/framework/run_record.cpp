@@ -1,34 +1,15 @@
 #include "framework/run_record.h"
 
-#include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <limits>
 #include <memory>
-#include <sstream>
 #include <thread>
+
+#include "framework/json_object.h"
 
 namespace monolith {
 namespace {
-
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    if (c == '\n') {
-      out += "\\n";
-    } else if (static_cast<unsigned char>(c) >= 0x20) {
-      out += c;
-    }
-  }
-  return out + '"';
-}
-
-std::string number(double value) {
-  if (!std::isfinite(value)) return "null";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.10g", value);
-  return text;
-}
 
 std::string outputOf(const std::string& command) {
   const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
@@ -38,17 +19,6 @@ std::string outputOf(const std::string& command) {
   while (!out.empty() && out.back() == '\n') out.pop_back();
   return out;
 }
-
-class Line {
- public:
-  void add(const std::string& key, const std::string& json) {
-    text_ += (text_.empty() ? "{" : ", ") + quoted(key) + ": " + json;
-  }
-  std::string end() const { return text_ + "}\n"; }
-
- private:
-  std::string text_;
-};
 
 }  // namespace
 
@@ -73,30 +43,35 @@ Origin findOrigin() {
 std::string toJson(const Run& run, const Origin& origin) {
   std::string out;
   const auto add = [&](const Measurement* m) {
-    Line line;
-    line.add("case", quoted(run.case_name));
-    line.add("variant", quoted(run.variant));
-    line.add("quantity", m ? quoted(m->quantity) : "null");
-    line.add("reference", m ? number(m->reference) : "null");
-    line.add("result", m ? number(m->result) : "null");
-    line.add("error", m ? number(m->error()) : "null");
-    line.add("goal", m && m->goal > 0.0 ? number(m->goal) : "null");
-    line.add("judged", run.judged ? "true" : "false");
-    line.add("cells_across", number(run.numerics.cells_across));
-    line.add("dt", number(run.numerics.dt));
-    line.add("tolerance", number(run.numerics.tolerance));
-    line.add("solver", quoted(toString(run.numerics.solver)));
-    line.add("discretisation", quoted(toString(run.numerics.discretisation)));
-    line.add("steady", run.steady ? "true" : "false");
-    line.add("cpu_s", number(run.cpu_s));
-    line.add("wall_s", number(run.wall_s));
-    line.add("simulated_s", number(run.simulated_s));
-    line.add("substeps", std::to_string(run.substeps));
-    line.add("iterations", std::to_string(run.iterations));
-    if (!run.failure.empty()) line.add("failure", quoted(run.failure));
-    line.add("commit", quoted(origin.commit));
-    line.add("machine", quoted(origin.machine));
-    out += line.end();
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    JsonObject line;
+    line.add("case", run.case_name);
+    line.add("variant", run.variant);
+    if (m) {
+      line.add("quantity", m->quantity);
+    } else {
+      line.addRaw("quantity", "null");
+    }
+    line.add("reference", m ? m->reference : kNone);
+    line.add("result", m ? m->result : kNone);
+    line.add("error", m ? m->error() : kNone);
+    line.add("goal", m && m->goal > 0.0 ? m->goal : kNone);
+    line.addRaw("judged", run.judged ? "true" : "false");
+    line.add("cells_across", run.numerics.cells_across);
+    line.add("dt", run.numerics.dt);
+    line.add("tolerance", run.numerics.tolerance);
+    line.add("solver", toString(run.numerics.solver));
+    line.add("discretisation", toString(run.numerics.discretisation));
+    line.addRaw("steady", run.steady ? "true" : "false");
+    line.add("cpu_s", run.cpu_s);
+    line.add("wall_s", run.wall_s);
+    line.add("simulated_s", run.simulated_s);
+    line.add("substeps", static_cast<double>(run.substeps));
+    line.add("iterations", static_cast<double>(run.iterations));
+    if (!run.failure.empty()) line.add("failure", run.failure);
+    line.add("commit", origin.commit);
+    line.add("machine", origin.machine);
+    out += line.str() + "\n";
   };
   for (const Measurement& m : run.measurements) add(&m);
   if (run.measurements.empty()) add(nullptr);

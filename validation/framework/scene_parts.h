@@ -4,19 +4,12 @@
 #include <string>
 
 #include "framework/case.h"
-#include "scene/scene.h"
+#include "scene/solid_body.h"
 
 namespace monolith {
 
 // Path of a scene in config/scenes.
 std::string shippedScene(const std::string& name);
-
-BodyDescription sphereBody(const std::string& name, double radius, double density, const Eigen::Vector3d& position);
-BodyDescription boxBody(const std::string& name, const Eigen::Vector3d& size, double density,
-                        const Eigen::Vector3d& position);
-// Axis along z of W.
-BodyDescription cylinderBody(const std::string& name, double radius, double length, double density,
-                             const Eigen::Vector3d& position);
 
 // Tolerance, solver and discretisation as the numerics have them; one thread, so that CPU time is work; the time step
 // unless the numerics leave it to the scene. The cell width is the case's to derive from cells_across.
