@@ -221,12 +221,15 @@ def advice(cases):
 def writeReport(runs, folder):
     cases = grouped(runs, lambda r: r['case'])
     first = runs[0]
+    # Runs of several calls may have been put together.
+    names = list(dict.fromkeys(r['commit'] for r in runs))
+    commits = ('commit ' if len(names) == 1 else 'commits ') + ', '.join(names)
     total = {(r['case'], r['variant']) + tuple(r[k] for k in KNOBS): r['cpu_s'] for r in runs}
     lines = ['# Validation', '',
-             'Made by `./tank validate` from commit %s on %s: %d runs, %.0f s of CPU, one thread each. An error is relative to '
+             'Made by `./tank validate` from %s on %s: %d runs, %.0f s of CPU, one thread each. An error is relative to '
              'the reference; a cost is CPU time per simulated second, or to reach the steady state. Dashed lines in the plots are '
              'goals, crosses the published method\'s volume fractions.' % (
-                 first['commit'], first['machine'], len(total), sum(total.values())), '',
+                 commits, first['machine'], len(total), sum(total.values())), '',
              'Goals count for the runs at the case\'s own step and tolerance. *Order* is the median of the observed orders of '
              'convergence; *dominant* names what moves the result most when it alone is refined.', '',
              '| case | worst error against its goal | goal | | CPU s | order in h | in dt | dominant |',
