@@ -25,8 +25,9 @@ std::unique_ptr<StepSolver> makeSolver(SolverName name) {
 }  // namespace
 
 struct CoupledSystem::Impl {
-  Impl(const MacGrid& grid, SolverName name, CouplingName coupling_name, Discretisation discretisation)
-      : problem(grid, discretisation), solver(makeSolver(name)), coupling(coupling_name) {}
+  Impl(const MacGrid& grid, SolverName name, CouplingName coupling_name, Discretisation discretisation,
+       double sticking_viscosity)
+      : problem(grid, discretisation, sticking_viscosity), solver(makeSolver(name)), coupling(coupling_name) {}
 
   StepProblem problem;
   std::unique_ptr<StepSolver> solver;
@@ -54,8 +55,8 @@ struct CoupledSystem::Impl {
 };
 
 CoupledSystem::CoupledSystem(const MacGrid& grid, SolverName solver, CouplingName coupling,
-                             Discretisation discretisation)
-    : impl_(std::make_unique<Impl>(grid, solver, coupling, discretisation)) {}
+                             Discretisation discretisation, double sticking_viscosity)
+    : impl_(std::make_unique<Impl>(grid, solver, coupling, discretisation, sticking_viscosity)) {}
 CoupledSystem::~CoupledSystem() = default;
 
 const StepProblem& CoupledSystem::problem() const { return impl_->problem; }

@@ -23,7 +23,9 @@ struct CoupledState {
 
 class CoupledSystem {
  public:
-  CoupledSystem(const MacGrid& grid, SolverName solver, CouplingName coupling, Discretisation discretisation);
+  // sticking_viscosity: stickingViscosity() of the liquid (sticking_liquid.h).
+  CoupledSystem(const MacGrid& grid, SolverName solver, CouplingName coupling, Discretisation discretisation,
+                double sticking_viscosity);
   ~CoupledSystem();
 
   // Geometry and material of the step; liquid_distance in cell widths with its halo filled. Bodies and distance must

@@ -9,9 +9,6 @@
 namespace monolith {
 namespace {
 
-// From this viscous number on a time step resolves the film between a body and the nearest faces: no slip there.
-// Below, the liquid next to the body is free to slip and viscosity only drags it along.
-constexpr double kStickingNumber = 0.05;
 // Flux that a sealed region cannot take up, relative to the fluxes through its boundary: above, the motions are at
 // fault, below, round-off.
 constexpr double kFluxTolerance = 1e-7;
@@ -75,7 +72,8 @@ void StepProblem::assemble(SolidFractions& solids, const std::vector<RigidBody>&
 }
 
 void StepProblem::assembleFitted(SolidFractions& solids, const std::vector<double>& liquid_distance, bool rates) {
-  if (viscous_number >= kStickingNumber) {
+  sticking.clear();
+  if (viscous_number > 0.0 && viscous_number * impulse_scale >= sticking_viscosity * dt * grid.h) {
     attachStickingLiquid(grid, solids, sticking);
     for (StickingLiquid& s : sticking) {
       s.fraction *= liquidPart(liquid_distance[s.face - grid.lattice.stride[s.axis]], liquid_distance[s.face]);

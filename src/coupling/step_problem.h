@@ -25,8 +25,10 @@ namespace monolith {
 
 class StepProblem {
  public:
-  explicit StepProblem(const MacGrid& grid, Discretisation discretisation = Discretisation::kFitted)
-      : grid(grid), discretisation(discretisation) {}
+  // sticking_viscosity: stickingViscosity(), of `fitted`.
+  explicit StepProblem(const MacGrid& grid, Discretisation discretisation = Discretisation::kFitted,
+                       double sticking_viscosity = 0.0)
+      : grid(grid), discretisation(discretisation), sticking_viscosity(sticking_viscosity) {}
 
   // Geometry and material; liquid_distance in cell widths with its halo filled. Bodies must outlive the problem; in
   // `solids` the liquid that sticks to the bodies is moved to them. With `rates`, `strain` is filled, too.
@@ -60,6 +62,7 @@ class StepProblem {
 
   MacGrid grid;
   Discretisation discretisation;
+  double sticking_viscosity;  // Pa.s
   StaggeredCoefficients<double> coefficients;
   BodyRows rows;
   FaceField<double> flux_share;  // U = flux_share u, 0 without an unknown; empty: U = u

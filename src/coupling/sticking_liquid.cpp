@@ -1,10 +1,19 @@
 #include "coupling/sticking_liquid.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 namespace monolith {
 namespace {
+
+// What a face keeps beyond the linear share for each surface that cuts a segment of it. A linear share makes the speeds
+// in a plane channel exact and its flow rate too small by (h/H)^2; 1/12 more would make the flow rate exact, in the mean
+// over the surface's places in the grid. At walls of the tank, always half a cell away, it is 1/12 too, and 1/4 is
+// nothing stuck. Around spheres the layer is curved: these are the values with which arrays, and boxes at 4 and 10 cells
+// across, come out best.
+constexpr double kExtraAtBody = 1.0 / 24.0;
+constexpr double kExtraAtWall = 1.0 / 6.0;
 
 // Place of a cell in a body's box, in the periodic image that is nearest to the body; false outside.
 bool localCell(const Lattice& l, const BodyFractions& f, const int cell[3], int local[3]) {
@@ -23,10 +32,14 @@ bool localCell(const Lattice& l, const BodyFractions& f, const int cell[3], int 
 
 }  // namespace
 
+double stickingViscosity(double density, const Eigen::Vector3d& gravity, double cell_width) {
+  constexpr double kLeastLayer = 0.1;
+  return kLeastLayer * density * std::sqrt(gravity.norm() * cell_width * cell_width * cell_width);
+}
+
 void attachStickingLiquid(const MacGrid& grid, SolidFractions& solids, std::vector<StickingLiquid>& out) {
   const Lattice& l = grid.lattice;
   out.clear();
-  if (solids.bodies.empty()) return;
   for (int a = 0; a < 3; ++a) {
     const auto& distance = solids.distance[a];
     const auto& owner = solids.owner[a];
@@ -48,8 +61,11 @@ void attachStickingLiquid(const MacGrid& grid, SolidFractions& solids, std::vect
               for (const auto step : {-l.stride[b], l.stride[b]}) {
                 const double beyond = distance[f + step];
                 double theta = 1.0;
-                if (beyond <= 0.0 && owner[f + step] >= 0) {
-                  theta = distance[f] / (distance[f] - beyond);
+                if (beyond <= 0.0) {
+                  // The distance here may be that of a body: walls lie on faces, whatever else is near.
+                  const bool wall = owner[f + step] < 0;
+                  theta = !wall ? distance[f] / (distance[f] - beyond) : a == b ? 1.0 : 0.5;
+                  share += wall ? kExtraAtWall : kExtraAtBody;
                   if (theta < nearest) {
                     nearest = theta;
                     body = owner[f + step];

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "coupling/coupled_system.h"
+#include "coupling/sticking_liquid.h"
 #include "fluid/free_surface.h"
 #include "rigid/contact.h"
 #include "simulation/body_motion.h"
@@ -56,7 +57,8 @@ struct Simulation::Impl {
         grid(makeGrid(s.tank, s.liquid)),
         walls(makeWalls(s.tank)),
         sampler(grid),
-        system(grid, s.solver.name, s.solver.coupling, s.solver.discretisation),
+        system(grid, s.solver.name, s.solver.coupling, s.solver.discretisation,
+               stickingViscosity(s.liquid.density, s.gravity, grid.h)),
         laws(s),
         viscosity_law(makeViscosityLaw(s.liquid)) {}
 

@@ -79,6 +79,7 @@ struct RandomStep {
     extendIntoHalo(l, liquid);
     const double dt = 0.01;
     number = seed % 5 == 0 ? 0.0 : std::pow(10.0, -2.0 + 6.0 * unit(random));
+    problem.sticking_viscosity = 0.05 * 1000.0 * grid.h * grid.h / dt;  // some stick, some slip
     problem.assemble(solids, bodies, liquid, 1000.0, number * 1000.0 * grid.h * grid.h / dt, dt);
     for (int a = 0; a < 3; ++a) {
       free_velocity[a].assign(l.size, 0.0);

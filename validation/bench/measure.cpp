@@ -14,6 +14,7 @@
 #include <limits>
 
 #include "coupling/coupled_system.h"
+#include "coupling/sticking_liquid.h"
 #include "framework/meter.h"
 #include "rigid/contact.h"
 #include "simulation/contact_laws.h"
@@ -52,7 +53,8 @@ struct FirstStep {
       : scene(s),
         grid(makeGrid(s.tank, s.liquid)),
         surface(grid, s.liquid.fill_level, s.liquid.boxes),
-        system(grid, s.solver.name, s.solver.coupling, s.solver.discretisation) {
+        system(grid, s.solver.name, s.solver.coupling, s.solver.discretisation,
+               stickingViscosity(s.liquid.density, s.gravity, grid.h)) {
     for (const BodyDescription& body : s.bodies) bodies.push_back(makeRigidBody(body, 0.5 * grid.h));
     SolidSampler(grid).sample(bodies, sampled);
     surface.extendIntoSolids(sampled.cell_distance);
