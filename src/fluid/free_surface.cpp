@@ -41,20 +41,44 @@ FreeSurface::FreeSurface(const MacGrid& grid, double fill_height, const std::vec
   const Lattice& l = grid.lattice;
   distance_.assign(l.size, kFar);
   const double top = grid.size()[2];
-  // Faces that lie on the tank's walls do not bound the liquid: what is beyond them never counts.
-  const auto boxDistance = [&](const Eigen::Vector3d& x, const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+  const bool by_level = fill_height > 0.0;
+  std::vector<Eigen::AlignedBox3d> all = boxes;
+  if (by_level) {
+    all.emplace_back(grid.origin, grid.origin + Eigen::Vector3d(grid.size()[0], grid.size()[1], fill_height));
+  }
+  const auto isCovered = [&](const Eigen::Vector3d& x) {
+    return std::any_of(all.begin(), all.end(), [&](const auto& box) { return box.contains(x); });
+  };
+  // A box's faces on the tank's walls do not bound the liquid, what is beyond them never counts; nor do its faces where they
+  // meet other liquid.
+  const auto boxDistance = [&](const Eigen::Vector3d& x, const Eigen::AlignedBox3d& box, bool within) {
+    const double nudge = 1e-9 * grid.h;
     Eigen::Vector3d outside = Eigen::Vector3d::Zero();
     double inside = -kFar;
     for (int a = 0; a < 3; ++a) {
-      const double wall_low = grid.origin[a] + 1e-9 * grid.h;
-      const double wall_high = grid.origin[a] + grid.size()[a] - 1e-9 * grid.h;
-      double d = -kFar;
-      if (low[a] > wall_low) d = std::max(d, (low[a] - x[a]) / grid.h);
-      if (high[a] < wall_high) d = std::max(d, (x[a] - high[a]) / grid.h);
-      outside[a] = std::max(d, 0.0);
-      inside = std::max(inside, d);
+      for (const int side : {-1, 1}) {
+        const double at = side < 0 ? box.min()[a] : box.max()[a];
+        const double wall = grid.origin[a] + (side < 0 ? 0.0 : grid.size()[a]);
+        if (side * (wall - at) <= nudge) continue;
+        Eigen::Vector3d foot = x;
+        foot[a] = at + side * nudge;
+        if (within && isCovered(foot)) continue;
+        const double d = side * (x[a] - at) / grid.h;
+        outside[a] = std::max(outside[a], d);
+        inside = std::max(inside, d);
+      }
     }
-    return inside > 0.0 ? outside.norm() : inside;
+    return within ? inside : outside.norm();
+  };
+  // Each of the faces is at most as near as the surface: the nearest counts, of the boxes around a point or, outside, of
+  // all.
+  const auto unionDistance = [&](const Eigen::Vector3d& x) {
+    double in = -kFar, out = kFar;
+    for (const auto& box : all) {
+      const bool within = box.contains(x);
+      (within ? in : out) = within ? std::max(in, boxDistance(x, box, true)) : std::min(out, boxDistance(x, box, false));
+    }
+    return in > -kFar ? in : isCovered(x) ? -kBand : out;
   };
   full_ = true;
   empty_ = true;
@@ -62,9 +86,7 @@ FreeSurface::FreeSurface(const MacGrid& grid, double fill_height, const std::vec
     for (int j = 0; j < l.n[1]; ++j) {
       for (int i = 0; i < l.n[0]; ++i) {
         const Eigen::Vector3d x = grid.cellCenter(i, j, k);
-        double d = kFar;
-        if (fill_height > 0.0) d = fill_height >= top * (1.0 - 1e-12) ? -kFar : (k + 0.5) - fill_height / grid.h;
-        for (const auto& box : boxes) d = std::min(d, boxDistance(x, box.min(), box.max()));
+        const double d = unionDistance(x);
         distance_[l.index(i, j, k)] = d;
         full_ = full_ && d <= -0.5;
         empty_ = empty_ && d >= 0.0;
@@ -72,7 +94,7 @@ FreeSurface::FreeSurface(const MacGrid& grid, double fill_height, const std::vec
     }
   }
   // A tank filled to within half a cell of its lid still has a surface unless it is filled to the lid.
-  if (fill_height > 0.0 && fill_height < top * (1.0 - 1e-12) && boxes.empty()) full_ = false;
+  if (by_level && fill_height < top * (1.0 - 1e-12) && boxes.empty()) full_ = false;
   extendIntoHalo(l, distance_);
 }
 

@@ -26,6 +26,29 @@ TEST(FreeSurface, VolumeOfAFillIsExact) {
   EXPECT_TRUE(FreeSurface(grid, 0.0, {}).empty());
 }
 
+// Where liquid meets liquid there is no surface: boxes side by side, one in another, one on the fill are as one box.
+TEST(FreeSurface, ASeamIsNoSurface) {
+  const MacGrid grid = cube(12, 0.05);
+  const std::vector<double> open(grid.lattice.size, 1.0);
+  const auto box = [](double x0, double x1, double z0, double z1) {
+    return Eigen::AlignedBox3d(Eigen::Vector3d(x0, 0.1, z0), Eigen::Vector3d(x1, 0.5, z1));
+  };
+  const FreeSurface one(grid, 0.0, {box(0.1, 0.5, 0.0, 0.42)});
+  const std::vector<std::vector<Eigen::AlignedBox3d>> divisions = {
+      {box(0.1, 0.31, 0.0, 0.42), box(0.31, 0.5, 0.0, 0.42)},
+      {box(0.1, 0.5, 0.0, 0.2), box(0.1, 0.5, 0.2, 0.42)},
+      {box(0.1, 0.5, 0.0, 0.42), box(0.2, 0.4, 0.1, 0.3)}};
+  for (const auto& boxes : divisions) {
+    const FreeSurface divided(grid, 0.0, boxes);
+    EXPECT_NEAR(divided.volume(open), one.volume(open), 1e-9);
+    for (std::size_t c = 0; c < grid.lattice.size; ++c) {
+      if (one.distance()[c] > -6.0) EXPECT_NEAR(divided.distance()[c], one.distance()[c], 1e-9);
+    }
+  }
+  const Eigen::AlignedBox3d upper(Eigen::Vector3d(0.0, 0.0, 0.225), Eigen::Vector3d(0.6, 0.6, 0.4));
+  EXPECT_NEAR(FreeSurface(grid, 0.225, {upper}).volume(open), 0.4 * 0.36, 1e-9);
+}
+
 TEST(FreeSurface, CorrectionReachesTheTargetAndSaysByHowMuch) {
   const MacGrid grid = cube(12, 0.05);
   const std::vector<double> open(grid.lattice.size, 1.0);

@@ -13,8 +13,7 @@ namespace {
 constexpr double kGravity = 9.81;
 constexpr double kLength = 1.0;  // m, of the tank
 
-// Liquid `depth` deep with the surface depth + height cos(k x), as boxes that end on the slope; thin and periodic along
-// y.
+// Liquid `depth` deep with the surface depth + height cos(k x), as a box for each column of cells; thin and periodic along y.
 Scene waveScene(double depth, double waves, double height, double viscosity, TimeStepping scheme,
                 const Numerics& numerics) {
   const int cells = static_cast<int>(std::lround(numerics.cells_across));
@@ -31,11 +30,7 @@ Scene waveScene(double depth, double waves, double height, double viscosity, Tim
   for (int i = 0; i < cells; ++i) {
     const double low = i * h, high = low + h;
     const double top = depth + height * (std::sin(k * high) - std::sin(k * low)) / (k * h);
-    // Each reaches on to where the surface is lower: no seams.
-    const bool falls = 2.0 * waves * (low + 0.5 * h) < kLength;
-    const bool lowest = falls && 2.0 * waves * (high + 0.5 * h) >= kLength;
-    scene.liquid.boxes.emplace_back(Eigen::Vector3d(falls ? 0.0 : low, 0.0, 0.0),
-                                    Eigen::Vector3d(falls && !lowest ? high : kLength, 4.0 * h, top));
+    scene.liquid.boxes.emplace_back(Eigen::Vector3d(low, 0.0, 0.0), Eigen::Vector3d(high, 4.0 * h, top));
   }
   apply(numerics, scene);
   scene.solver.time_stepping = scheme;
