@@ -40,12 +40,14 @@ struct CoupledSystem::Impl {
     const Lattice& l = problem.grid.lattice;
     x.resize(l, problem.bodies->size());
     for (int a = 0; a < 3; ++a) {
+#pragma omp parallel for schedule(static)
       for (std::size_t i = 0; i < l.size; ++i) {
         x.velocity[a][i] = problem.coefficients.mass[a][i] > 0.0 ? state.velocity[a][i] : 0.0;
       }
       clearHalo(l, x.velocity[a]);
     }
     problem.toUnknowns(x.velocity);
+#pragma omp parallel for schedule(static)
     for (std::size_t i = 0; i < l.size; ++i) {
       x.pressure[i] = problem.coefficients.has_pressure[i] ? state.pressure[i] / problem.pressure_scale : 0.0;
     }
@@ -146,6 +148,7 @@ CoupledReport CoupledSystem::solve(const FaceField<double>& free_velocity, const
 
   state.velocity = m.x.velocity;
   p.toVelocities(state.velocity);
+#pragma omp parallel for simd schedule(static)
   for (std::size_t i = 0; i < l.size; ++i) state.pressure[i] = m.x.pressure[i] * p.pressure_scale;
   state.twists = m.x.bodies;
   p.results(m.x, gravity, state.liquid, report.divergence);

@@ -70,9 +70,12 @@ void PackedSystem::judgeAge(const CoupledReport& report) {
 void PackedSystem::pack(const StepVector& v, bool forces, std::vector<double>& x) const {
   const std::size_t n = lattice().size;
   x.resize(size());
-  for (int a = 0; a < 3; ++a) std::copy_n(v.velocity[a].begin(), n, x.begin() + a * n);
   const double weight = forces ? flux_weight_ : 1.0;
-  for (std::size_t i = 0; i < n; ++i) x[3 * n + i] = weight * v.pressure[i];
+#pragma omp parallel for simd schedule(static)
+  for (std::size_t i = 0; i < n; ++i) {
+    for (int a = 0; a < 3; ++a) x[a * n + i] = v.velocity[a][i];
+    x[3 * n + i] = weight * v.pressure[i];
+  }
   for (int field = 0; field < 4; ++field) clearHalo(lattice(), x.data() + field * n);
   const Eigen::VectorXd b = gatherBodies(*problem_, v.bodies);
   Eigen::Map<Eigen::VectorXd>(x.data() + liquidSize(), bodySize()) =
@@ -81,11 +84,12 @@ void PackedSystem::pack(const StepVector& v, bool forces, std::vector<double>& x
 
 void PackedSystem::unpackMotion(const std::vector<double>& x, StepVector& v) const {
   const std::size_t n = lattice().size;
-  for (int a = 0; a < 3; ++a) {
-    std::copy_n(x.begin() + a * n, n, v.velocity[a].begin());
-    clearHalo(lattice(), v.velocity[a]);
+#pragma omp parallel for simd schedule(static)
+  for (std::size_t i = 0; i < n; ++i) {
+    for (int a = 0; a < 3; ++a) v.velocity[a][i] = x[a * n + i];
+    v.pressure[i] = x[3 * n + i];
   }
-  std::copy_n(x.begin() + 3 * n, n, v.pressure.begin());
+  for (auto& field : v.velocity) clearHalo(lattice(), field);
   clearHalo(lattice(), v.pressure);
   scatterBodies(*problem_, twists(x), v.bodies);
 }

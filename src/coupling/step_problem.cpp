@@ -233,8 +233,10 @@ void StepProblem::results(StepVector& x, const Eigen::Vector3d& gravity, std::ve
                           double& divergence) const {
   StepVector y;
   op_.apply(x, y);
-  divergence = 0.0;
-  for (const double d : y.pressure) divergence = std::max(divergence, std::abs(d) / grid.h);
+  double largest = 0.0;
+#pragma omp parallel for simd schedule(static) reduction(max : largest)
+  for (std::size_t i = 0; i < y.pressure.size(); ++i) largest = std::max(largest, std::abs(y.pressure[i]));
+  divergence = largest / grid.h;
   for (const StickingLiquid& s : sticking) {
     const Vector6d row = velocityRow(s.axis, s.position, (*bodies)[s.body].p_WBcm);
     y.bodies[s.body] += s.fraction * (row.dot(x.bodies[s.body]) - stickingVelocity(s, row, gravity)) * row;

@@ -103,7 +103,7 @@ struct SolverDescription {
   double tolerance = 1e-5;        // relative residual of the coupled solve
   int maximum_iterations = 200;   // of one coupled solve
   int threads = 0;                // 0: as many as the machine has; never changes a result
-  double cfl = 1.0;               // cells that liquid or body may cross in one sub-step
+  double cfl = 0.75;              // cells that liquid or body may cross in one sub-step; beyond 0.75 it is of first order
 };
 
 // How surfaces meet: Coulomb friction and Newton's restitution, of pairs of bodies or materials; the walls of the tank are

@@ -83,7 +83,8 @@ double largestSpeed(const FaceField<double>& velocity) {
   double sum = 0.0;
   for (const auto& field : velocity) {
     double largest = 0.0;
-    for (const double u : field) largest = std::max(largest, std::abs(u));
+#pragma omp parallel for simd schedule(static) reduction(max : largest)
+    for (std::size_t i = 0; i < field.size(); ++i) largest = std::max(largest, std::abs(field[i]));
     sum += largest * largest;
   }
   return std::sqrt(sum);

@@ -90,7 +90,7 @@ StepReport Simulation::step() {
   Impl& m = *impl_;
   const int threads_before = omp_get_max_threads();
   if (m.scene.solver.threads > 0) omp_set_num_threads(m.scene.solver.threads);
-  const SimulationState before = m.state;
+  m.before = m.state;
   m.state.mean_liquid.assign(m.state.bodies.size(), Wrench());
   m.state.mean_contact.assign(m.state.bodies.size(), Wrench());
   StepReport step;
@@ -113,11 +113,11 @@ StepReport Simulation::step() {
     }
     if (good) {
       step.status = SolveStatus::kConverged;
-      m.state.step = before.step + 1;
+      m.state.step = m.before.step + 1;
       m.state.time = static_cast<double>(m.state.step) * m.scene.time_step;
       m.measure(step);
     } else {
-      m.state = before;
+      m.state = m.before;
       m.prepareGeometry();
     }
   }

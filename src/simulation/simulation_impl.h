@@ -84,7 +84,7 @@ struct Simulation::Impl {
   void guess(const StepWeights& w, const FaceField<double>& gained);
   CoupledReport solveWithLiquid(const StepWeights& w, const std::vector<Contact>& contacts, StepReport& report);
   void takeMeans(const StepWeights& w, const std::vector<Wrench>& liquid_before);
-  void moveLiquid(const StepWeights& w, const FaceField<double>& velocity_before, StepReport& report);
+  void moveLiquid(const StepWeights& w, StepReport& report);
   void prepareGeometry();
   void measure(StepReport& report) const;
 
@@ -98,6 +98,11 @@ struct Simulation::Impl {
   SolidFractions step_solids;  // as the last solve used them
   std::vector<FreeSurface> step_surface;
   FaceField<double> carried;  // velocity that the liquid at each face had at the start of the step
+  // Within a sub-step only, kept for their memory.
+  struct Scratch {
+    FaceField<double> free_velocity, gained, velocity_before;
+    std::array<std::vector<std::uint8_t>, 3> known_before, known;
+  } scratch;
   CoupledSystem system;
   ContactLaws laws;
   ViscosityLaw viscosity_law;
@@ -108,6 +113,7 @@ struct Simulation::Impl {
   double sticking_energy = 0.0;  // J
   Eigen::Vector3d sticking_momentum = Eigen::Vector3d::Zero();
   SimulationState state;
+  SimulationState before;  // the last output step
   StepReport report;
 };
 

@@ -58,17 +58,20 @@ void Simulation::Impl::prepareSolve(const StepWeights& w) {
 void Simulation::Impl::advectLiquid(const StepWeights& w, FaceField<double>& free_velocity, FaceField<double>& gained) {
   if (w.order == 2 && hasLiquid()) {
     advectAccelerated(grid, state.coupled.velocity, state.acceleration, state.known, w.dt, carried, gained);
-    free_velocity = carried;
-    for (int a = 0; a < 3; ++a) {
-      for (std::size_t i = 0; i < gained[a].size(); ++i) free_velocity[a][i] += w.carry * w.dt * gained[a][i];
-    }
   } else {
+    for (auto& field : gained) field.clear();
     advectVelocity(grid, state.coupled.velocity, state.known, w.dt, carried);
-    free_velocity = carried;
   }
   for (int a = 0; a < 3; ++a) {
-    if (scene.gravity[a] == 0.0) continue;
-    for (double& u : free_velocity[a]) u += w.implicit * scene.gravity[a];
+    const std::size_t size = carried[a].size();
+    free_velocity[a].resize(size);
+    const double falls = w.implicit * scene.gravity[a];
+    const double part = w.carry * w.dt;
+    const bool gains = !gained[a].empty();
+#pragma omp parallel for simd schedule(static)
+    for (std::size_t i = 0; i < size; ++i) {
+      free_velocity[a][i] = carried[a][i] + falls + (gains ? part * gained[a][i] : 0.0);
+    }
   }
 }
 
@@ -80,6 +83,7 @@ void Simulation::Impl::guess(const StepWeights& w, const FaceField<double>& gain
     if (w.order == 2) state.coupled.twists[b] += w.dt * state.body_acceleration[b];
   }
   for (int a = 0; a < 3; ++a) {
+#pragma omp parallel for schedule(static)
     for (std::size_t i = 0; i < gained[a].size(); ++i) {
       if (state.known[a][i]) state.coupled.velocity[a][i] = carried[a][i] + w.dt * gained[a][i];
     }
@@ -89,7 +93,8 @@ void Simulation::Impl::guess(const StepWeights& w, const FaceField<double>& gain
 CoupledReport Simulation::Impl::solveWithLiquid(const StepWeights& w, const std::vector<Contact>& contacts,
                                                 StepReport& step) {
   const LiquidDescription& liquid = scene.liquid;
-  FaceField<double> free_velocity, gained;
+  FaceField<double>& free_velocity = scratch.free_velocity;
+  FaceField<double>& gained = scratch.gained;
   {
     const StageClock clock(step.times.advection);
     advectLiquid(w, free_velocity, gained);
@@ -144,7 +149,7 @@ void Simulation::Impl::takeMeans(const StepWeights& w, const std::vector<Wrench>
   }
 }
 
-void Simulation::Impl::moveLiquid(const StepWeights& w, const FaceField<double>& velocity_before, StepReport& step) {
+void Simulation::Impl::moveLiquid(const StepWeights& w, StepReport& step) {
   step.maximum_speed = largestSpeed(state.coupled.velocity);
   // As far as a trajectory of this step reaches, and no further than the tank.
   const int most = *std::max_element(grid.lattice.n.begin(), grid.lattice.n.end());
@@ -152,7 +157,8 @@ void Simulation::Impl::moveLiquid(const StepWeights& w, const FaceField<double>&
   const int layers = static_cast<int>(std::min(reach, static_cast<double>(most))) + 3;
   std::vector<RigidBody> moving = plan.bodies;
   for (std::size_t b = 0; b < moving.size(); ++b) moving[b].twist = state.coupled.twists[b];
-  const auto known_before = state.known;
+  auto& known_before = scratch.known_before;
+  known_before = state.known;
   completeVelocity(grid, system.problem(), step_solids, moving, layers, noSlip(), nullptr, state.coupled.velocity,
                    state.known);
   if (secondOrder()) {
@@ -160,18 +166,21 @@ void Simulation::Impl::moveLiquid(const StepWeights& w, const FaceField<double>&
     FaceField<double>& acceleration = state.acceleration;
     for (int a = 0; a < 3; ++a) {
       acceleration[a].resize(grid.lattice.size);
+#pragma omp parallel for simd schedule(static)
       for (std::size_t i = 0; i < grid.lattice.size; ++i) {
         acceleration[a][i] = (state.coupled.velocity[a][i] - carried[a][i]) / w.dt;
       }
     }
-    std::array<std::vector<std::uint8_t>, 3> known;
-    completeVelocity(grid, system.problem(), step_solids, moving, layers, noSlip(), &known_before, acceleration, known);
+    completeVelocity(grid, system.problem(), step_solids, moving, layers, noSlip(), &known_before, acceleration,
+                     scratch.known);
   }
   if (w.order == 2) {
-    FaceField<double> mean = velocity_before;
+    FaceField<double>& mean = scratch.velocity_before;
     for (int a = 0; a < 3; ++a) {
-      for (std::size_t i = 0; i < grid.lattice.size; ++i)
+#pragma omp parallel for simd schedule(static)
+      for (std::size_t i = 0; i < grid.lattice.size; ++i) {
         mean[a][i] = 0.5 * (mean[a][i] + state.coupled.velocity[a][i]);
+      }
     }
     state.surface[0].advect(mean, w.dt, std::max(step.maximum_speed, state.liquid_speed));
     // The poses of the solve are those of now but for dt^2/2 times the acceleration.
@@ -199,7 +208,7 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
     plan = planBodies(w, closing, contacts);
   }
   const std::vector<Wrench> liquid_before = state.coupled.liquid;
-  const FaceField<double> velocity_before = w.order == 2 ? state.coupled.velocity : FaceField<double>();
+  if (w.order == 2) scratch.velocity_before = state.coupled.velocity;
   const CoupledReport solved = solveWithLiquid(w, contacts, step);
   step.iterations += solved.iterations;
   step.liquid_solves += solved.solves;
@@ -242,7 +251,7 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
   ++state.substeps;
   if (hasLiquid()) {
     const StageClock clock(step.times.surface);
-    moveLiquid(w, velocity_before, step);
+    moveLiquid(w, step);
   }
   state.time += dt;
   return true;

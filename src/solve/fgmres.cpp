@@ -1,6 +1,7 @@
 #include "solve/fgmres.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <type_traits>
 
@@ -35,19 +36,69 @@ double sumOfProducts(const Real* x, const Real* y, std::ptrdiff_t size) {
   return total;
 }
 
-// One step of modified Gram-Schmidt and the beginning of the next: w -= a v, then the product of w with `next` (which
-// may be w itself). Classical Gram-Schmidt would read the basis as often and loses orthogonality after some ten vectors
-// of single precision. 4 numbers and 4 flops an entry, bound by memory.
+// a.c, b.c, a.d, b.d at once: one sum alone would wait for its own additions.
 template <class Real>
-double subtract(const std::vector<Real>* v, double a, const std::vector<Real>& next, std::vector<Real>& w) {
-  const Real factor = static_cast<Real>(a);
-  return blockedSum<double>(w.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    if (v != nullptr) {
-      const Real* q = v->data();
-#pragma omp simd
-      for (std::ptrdiff_t i = begin; i < end; ++i) w[i] -= factor * q[i];
+std::array<double, 4> fourProducts(const Real* a, const Real* b, const Real* c, const Real* d, std::ptrdiff_t size) {
+  std::array<double, 4> total{};
+  for (std::ptrdiff_t begin = 0; begin < size; begin += kChunk) {
+    const auto end = std::min(size, begin + kChunk);
+    Real ac = 0, bc = 0, ad = 0, bd = 0;
+#pragma omp simd reduction(+ : ac, bc, ad, bd)
+    for (std::ptrdiff_t i = begin; i < end; ++i) {
+      ac += a[i] * c[i];
+      bc += b[i] * c[i];
+      ad += a[i] * d[i];
+      bd += b[i] * d[i];
     }
-    return sumOfProducts(next.data() + begin, w.data() + begin, end - begin);
+    total[0] += ac;
+    total[1] += bc;
+    total[2] += ad;
+    total[3] += bd;
+  }
+  return total;
+}
+
+// Products of w and of the newest vector of the basis with all of it. Two numbers and 4 flops an entry and vector, bound by
+// memory; the blocks of w and of the newest stay in the first cache.
+template <class Real>
+void multiply(const std::vector<std::vector<Real>>& basis, int count, const std::vector<Real>& w,
+              Eigen::VectorXd& with_w, Eigen::VectorXd& with_newest) {
+  const auto size = static_cast<std::ptrdiff_t>(w.size());
+  const std::ptrdiff_t blocks = (size + kSumBlock - 1) / kSumBlock;
+  Eigen::MatrixXd sums(2 * count, blocks);
+#pragma omp parallel for schedule(static)
+  for (std::ptrdiff_t b = 0; b < blocks; ++b) {
+    const std::ptrdiff_t begin = b * kSumBlock, length = std::min(size - begin, kSumBlock);
+    const Real *newest = basis[count - 1].data() + begin, *last = w.data() + begin;
+    for (int i = 0; i < count; i += 2) {
+      const int next = std::min(i + 1, count - 1);
+      const std::array<double, 4> products =
+          fourProducts(basis[i].data() + begin, basis[next].data() + begin, last, newest, length);
+      sums(i, b) = products[0];
+      sums(next, b) = products[1];
+      sums(count + i, b) = products[2];
+      sums(count + next, b) = products[3];
+    }
+  }
+  Eigen::VectorXd total = Eigen::VectorXd::Zero(2 * count);
+  for (std::ptrdiff_t b = 0; b < blocks; ++b) total += sums.col(b);
+  with_w = total.head(count);
+  with_newest = total.tail(count);
+}
+
+// w -= sum_i h[i] v_i; returns |w|^2. One number and 2 flops an entry and vector, bound by memory.
+template <class Real>
+double subtract(const std::vector<std::vector<Real>>& basis, const Eigen::VectorXd& h, std::vector<Real>& w) {
+  return blockedSum<double>(w.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    Real* to = w.data();
+    for (Eigen::Index i = 0; i < h.size(); i += 2) {
+      const bool pair = i + 1 < h.size();
+      const Real *p = basis[i].data(), *q = basis[pair ? i + 1 : i].data();
+      const Real a = static_cast<Real>(h[i]), b = static_cast<Real>(pair ? h[i + 1] : 0.0);
+#pragma omp simd
+      for (std::ptrdiff_t k = begin; k < end; ++k) to[k] -= a * p[k] + b * q[k];
+    }
+    return sumOfProducts(to + begin, to + begin, end - begin);
   });
 }
 
@@ -108,6 +159,7 @@ int Fgmres::cycle(const KrylovMaps& maps, double norm, double goal, int most, Sp
                   std::vector<double>& x) {
   constexpr bool single = std::is_same_v<Real, float>;
   Eigen::MatrixXd hessenberg = Eigen::MatrixXd::Zero(most + 1, most);
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(most, most);
   Eigen::VectorXd rhs = Eigen::VectorXd::Zero(most + 1);
   std::vector<Eigen::JacobiRotation<double>> rotations(most);
   rhs[0] = 1.0;
@@ -126,10 +178,13 @@ int Fgmres::cycle(const KrylovMaps& maps, double norm, double goal, int most, Sp
     room(space.basis, space.clean_basis, j + 1);
     std::vector<Real>& w = space.basis[j + 1];
     extend(maps, space.basis[j], room(space.directions, space.clean_directions, j), w);
-    Eigen::VectorXd h(j + 1);
-    h[0] = subtract<Real>(nullptr, 0.0, space.basis[0], w);
-    for (int i = 0; i < j; ++i) h[i + 1] = subtract(&space.basis[i], h[i], space.basis[i + 1], w);
-    const double length = std::sqrt(subtract(&space.basis[j], h[j], w, w));
+    // Modified Gram-Schmidt, whose coefficients are h = (I + L)^-1 V^T w with L the strictly lower part of V^T V
+    // (Swirydowicz et al. 2021, Numer. Linear Algebra Appl. 28, e2343): it reads the basis twice, not four times.
+    Eigen::VectorXd h, row;
+    multiply(space.basis, j + 1, w, h, row);
+    gram.row(j).head(j + 1) = row;
+    gram.topLeftCorner(j + 1, j + 1).template triangularView<Eigen::UnitLower>().solveInPlace(h);
+    const double length = std::sqrt(subtract(space.basis, h, w));
     hessenberg.col(j).head(j + 1) = h;
     hessenberg(j + 1, j) = length;
     for (int i = 0; i < j; ++i) hessenberg.col(j).applyOnTheLeft(i, i + 1, rotations[i].adjoint());

@@ -198,7 +198,7 @@ TEST(SceneTemplate, DefaultsItStatesAreThoseOfTheCode) {
   EXPECT_EQ(defaults.solver.tolerance, 1e-5);
   EXPECT_EQ(defaults.solver.maximum_iterations, 200);
   EXPECT_EQ(defaults.solver.threads, 0);
-  EXPECT_EQ(defaults.solver.cfl, 1.0);
+  EXPECT_EQ(defaults.solver.cfl, 0.75);
 }
 
 }  // namespace
