@@ -30,7 +30,6 @@ float removeMean(const std::vector<std::ptrdiff_t>& cells, float* field) {
 
 }  // namespace
 
-// Where viscosity varies by many orders of magnitude, inertia counts in some cells whatever the largest number is.
 bool LiquidPreconditioner::projects() const {
   return problem_->viscous_number <= kLargestProjected;
 }

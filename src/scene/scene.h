@@ -95,6 +95,9 @@ enum class Discretisation { kFitted, kFractions };
 // How a step approximates time (simulation/time_stepping.h): first or second order, the same solve.
 enum class TimeStepping { kBackwardEuler, kBdf2 };
 
+// A sub-step in which something crosses more cells is of first order (simulation/time_stepping.h).
+constexpr double kMostSecondOrderCells = 0.75;
+
 struct SolverDescription {
   SolverName name = SolverName::kFast;
   CouplingName coupling = CouplingName::kUnified;
@@ -103,7 +106,7 @@ struct SolverDescription {
   double tolerance = 1e-5;        // relative residual of the coupled solve
   int maximum_iterations = 200;   // of one coupled solve
   int threads = 0;                // 0: as many as the machine has; never changes a result
-  double cfl = 0.75;              // cells that liquid or body may cross in one sub-step; beyond 0.75 it is of first order
+  double cfl = kMostSecondOrderCells;  // cells that liquid or body may cross in one sub-step
 };
 
 // How surfaces meet: Coulomb friction and Newton's restitution, of pairs of bodies or materials; the walls of the tank are

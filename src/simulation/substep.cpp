@@ -14,14 +14,14 @@ constexpr double kFirstTolerance = 1e-4;
 constexpr double kClosingTolerance = 1e-3;  // of a cell: a gap that closes by less within a step is no impact
 // After the step of an impact one of backward Euler, for the next to continue.
 constexpr int kStepsAfterImpact = 1;
-// Where liquid crosses more cells in a step, the accelerations of particles are no longer resolved, and going on with
-// them is unstable where velocity jumps within a cell (a lid's edge).
-constexpr double kMostCells = 0.75;
+constexpr double kRoundOff = 1e-6;  // of a length of sub-steps that just fits
 
 }  // namespace
 
 StepWeights Simulation::Impl::weights(double dt) const {
-  const bool slow = state.liquid_speed * dt <= kMostCells * grid.h;
+  // Where liquid crosses more cells, the accelerations of particles are no longer resolved, and going on with them is
+  // unstable where velocity jumps within a cell (a lid's edge).
+  const bool slow = state.liquid_speed * dt <= (1.0 + kRoundOff) * kMostSecondOrderCells * grid.h;
   return secondOrder() && slow && state.euler_steps == 0 ? bdf2Weights(dt, state.last_dt) : eulerWeights(dt);
 }
 

@@ -58,8 +58,8 @@ std::array<double, 4> fourProducts(const Real* a, const Real* b, const Real* c, 
   return total;
 }
 
-// Products of w and of the newest vector of the basis with all of it. Two numbers and 4 flops an entry and vector, bound by
-// memory; the blocks of w and of the newest stay in the first cache.
+// Products of w and of the newest vector of the basis with all of it. One number and 4 flops an entry and vector, bound
+// by memory; the blocks of w and of the newest stay in the first cache.
 template <class Real>
 void multiply(const std::vector<std::vector<Real>>& basis, int count, const std::vector<Real>& w,
               Eigen::VectorXd& with_w, Eigen::VectorXd& with_newest) {

@@ -1,9 +1,9 @@
 // A sphere that settles in a closed tank of silicone oil: ten Cate, Nieuwstad, Derksen & Van den Akker 2002, Phys.
 // Fluids 14, 4012. The shipped scene is their case E1. Peak speed by their tables (their scatter: 1 %; u_inf is printed
-// with two digits, Abraham's correlation that it comes from gives 0.03829 and 0.09062 m/s); velocity over time by points
-// digitised from their figure, among them those of the deceleration above the floor. The digitised points are 3 to 4 %
-// too fast by their own integral, so they have a wide goal. E1's printed peak is above what the sphere could reach in that
-// tank without any inertia, 0.0355 m/s (Stokes flow, drag factor 1.3887), so no result can come closer than 1.3 %.
+// with two digits, so it is taken from Abraham's correlation, as theirs is); velocity over time by points digitised from
+// their figure, among them those of the deceleration above the floor. The digitised points are 3 to 4 % too fast by their
+// own integral, so they have a wide goal. E1's peak is above what the sphere could reach in that tank without any inertia,
+// 0.0355 m/s (Stokes flow, drag factor 1.3887), so no result can come closer than 2.1 %.
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +24,7 @@ struct Point {
 struct Experiment {
   const char* name;
   double density, viscosity;  // of the oil
-  double peak;                // m/s: u_max/u_inf of their table II times u_inf of their table I, as printed
+  double peak;                // m/s: u_max/u_inf of their table II times u_inf by Abraham's correlation, 1 % scatter
   double dt;                  // s
   std::vector<Point> points;
   std::size_t near_floor;  // the first point at which the floor slows the sphere
@@ -35,7 +35,7 @@ const std::vector<Experiment>& experiments() {
       {"E1",
        970.0,
        0.373,
-       0.947 * 0.038,
+       0.947 * 0.03829,
        0.02,
        {{0.06351, 0.011399}, {0.11161, 0.020317}, {0.16472, 0.023101}, {0.23884, 0.026978}, {0.3438, 0.030652},
         {0.47436, 0.033154}, {0.62737, 0.035001}, {0.93465, 0.035463}, {1.2024, 0.035563},  {1.54729, 0.036221},
@@ -45,7 +45,7 @@ const std::vector<Experiment>& experiments() {
       {"E3",
        962.0,
        0.113,
-       0.959 * 0.091,
+       0.959 * 0.09062,
        0.01,
        {{0.03011, 0.016959},
         {0.07385, 0.034316},
