@@ -135,7 +135,7 @@ void SolidSampler::sampleBody(const RigidBody& body, int index, SolidFractions& 
   std::vector<float> cell_distance(size);
   std::vector<std::array<float, 6>> halves(size);  // solid part of the low and high half along each axis
 
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int k = 0; k < f.count[2]; ++k) {
     for (int j = 0; j < f.count[1]; ++j) {
       for (int i = 0; i < f.count[0]; ++i) {
@@ -179,7 +179,7 @@ void SolidSampler::sampleBody(const RigidBody& body, int index, SolidFractions& 
   // A box longer than a period holds cells of the grid twice.
   bool once = true;
   for (int a = 0; a < 3; ++a) once = once && (!l.periodic[a] || f.count[a] <= l.n[a]);
-#pragma omp parallel for schedule(static) if (once)
+#pragma omp parallel for schedule(static, kPlanesInTurn) if (once)
   for (int k = 0; k < f.count[2]; ++k) {
     for (int j = 0; j < f.count[1]; ++j) {
       for (int i = 0; i < f.count[0]; ++i) {

@@ -29,7 +29,7 @@ std::ptrdiff_t sampleIndex(const Lattice& l, Cell at, int pair) {
 // Every sample of a body's box, as f(local index, position in the grid).
 template <class Function>
 void forEachInBox(const BodyFractions& box, Function&& f) {
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int k = 0; k < box.count[2]; ++k) {
     for (int j = 0; j < box.count[1]; ++j) {
       for (int i = 0; i < box.count[0]; ++i) {

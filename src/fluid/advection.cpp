@@ -68,10 +68,9 @@ inline Eigen::Vector3d velocityAtCell(const Lattice& l, const FaceField<double>&
   return v;
 }
 
-// The planes in turn to each thread: liquid may fill only the lowest.
 template <class RowFunction>
 void forEachRowInTurn(int end_j, int end_k, RowFunction&& f) {
-#pragma omp parallel for schedule(static, 1)
+#pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int k = 0; k < end_k; ++k) {
     for (int j = 0; j < end_j; ++j) f(j, k);
   }
@@ -164,7 +163,7 @@ void extrapolateVelocity(const Lattice& l, int layers, bool no_slip, std::array<
     std::vector<double>& u = velocity[a];
     std::vector<std::uint8_t>& mask = known[a];
     const int planes = l.faceEnd(2);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static, kPlanesInTurn)
     for (int k = 0; k < planes; ++k) {
       missing[k].clear();
       for (int j = 0; j < l.faceEnd(1); ++j) {
@@ -178,7 +177,7 @@ void extrapolateVelocity(const Lattice& l, int layers, bool no_slip, std::array<
       fillHalo(l, u);
       fillHalo(l, mask);
       // Faces found in this layer are written, and only faces known before are read: these are marked afterwards.
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static, kPlanesInTurn)
       for (int k = 0; k < planes; ++k) {
         found[k].clear();
         std::size_t left = 0;

@@ -114,7 +114,7 @@ void FreeSurface::redistance() {
   next.assign(l.size, kFar);
   std::vector<std::uint8_t> fixed(l.size, 0);
   // Next to the surface: the distance to the plane that the level set is there.
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int k = 0; k < l.n[2]; ++k) {
     for (int j = 0; j < l.n[1]; ++j) {
       for (int i = 0; i < l.n[0]; ++i) {
@@ -148,7 +148,7 @@ void FreeSurface::redistance() {
   for (int pass = 0; pass < passes; ++pass) {
     const double settled = (pass - 1) / std::sqrt(3.0);
     fillHalo(l, next);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static, kPlanesInTurn)
     for (int k = 0; k < l.n[2]; ++k) {
       for (int j = 0; j < l.n[1]; ++j) {
         for (int i = (j + k + pass) & 1; i < l.n[0]; i += 2) {
@@ -173,7 +173,7 @@ void FreeSurface::extendIntoSolids(const std::vector<double>& solid_distance) {
   const Lattice& l = grid_.lattice;
   scratch_ = distance_;
   const Eigen::Vector3d offset = nodeOffset(-1);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int k = 0; k < l.n[2]; ++k) {
     for (int j = 0; j < l.n[1]; ++j) {
       for (int i = 0; i < l.n[0]; ++i) {
@@ -198,7 +198,7 @@ FreeSurface::CutCells FreeSurface::findCutCells(double margin, const std::vector
   const Lattice& l = grid_.lattice;
   CutCells out;
   out.planes.resize(l.n[2]);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int k = 0; k < l.n[2]; ++k) {
     CutPlane& plane = out.planes[k];
     for (int j = 0; j < l.n[1]; ++j) {
@@ -222,7 +222,7 @@ FreeSurface::CutCells FreeSurface::findCutCells(double margin, const std::vector
 // One sum per plane, added in order: the same bits at any thread count.
 double FreeSurface::shiftedVolume(double shift, CutCells& cut) const {
   const int planes = static_cast<int>(cut.planes.size());
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int k = 0; k < planes; ++k) {
     CutPlane& plane = cut.planes[k];
     plane.sum = plane.full;

@@ -155,7 +155,7 @@ LiquidBudget liquidBudget(const MacGrid& grid, const FaceField<double>& liquid_m
   const Lattice& l = grid.lattice;
   // One sum per plane, added in order: the same bits at any thread count.
   std::vector<LiquidBudget> planes(l.faceEnd(2));
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int k = 0; k < l.faceEnd(2); ++k) {
     LiquidBudget& plane = planes[k];
     for (int j = 0; j < l.faceEnd(1); ++j) {

@@ -85,7 +85,7 @@ void PressureMultigrid::coarsen(const Lattice& from, const Network& fine, const 
   }
   coarse.to_air.assign(l.size, 0.0f);
   coarse.kind.assign(l.size, kOutside);
-#pragma omp parallel for schedule(static) if (from.size >= kSizeWorthSharing)
+#pragma omp parallel for schedule(static, kPlanesInTurn) if (from.size >= kSizeWorthSharing)
   for (int k = 0; k < l.n[2]; ++k) {
     for (int j = 0; j < l.n[1]; ++j) {
       for (int i = 0; i < l.n[0]; ++i) {

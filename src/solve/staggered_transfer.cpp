@@ -20,7 +20,7 @@ void restrictCells(const Lattice& fine, const std::vector<Real>& from, const Lat
   to.assign(coarse.size, Real(0));
   const auto sy = fine.stride[1];
   const auto sz = fine.stride[2];
-#pragma omp parallel for schedule(static) if (fine.size >= kSizeWorthSharing)
+#pragma omp parallel for schedule(static, kPlanesInTurn) if (fine.size >= kSizeWorthSharing)
   for (int k = 0; k < coarse.n[2]; ++k) {
     for (int j = 0; j < coarse.n[1]; ++j) {
       const Real* f = from.data() + fine.index(0, 2 * j, 2 * k);
@@ -41,7 +41,7 @@ void restrictFaces(const Lattice& fine, int axis, const std::vector<Real>& from,
   int end[3];
   // The last coarse face may lie beyond the fine grid, where there is nothing.
   for (int a = 0; a < 3; ++a) end[a] = a == axis ? std::min(coarse.faceEnd(a), fine.n[a] / 2 + 1) : coarse.n[a];
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int k = 0; k < end[2]; ++k) {
     for (int j = 0; j < end[1]; ++j) {
       const Real* f = from.data() + fine.index(0, 2 * j, 2 * k);
@@ -58,7 +58,7 @@ void restrictResidual(const Lattice& fine, int axis, const float* from, const La
   int end[3];
   // The last coarse face may lie beyond the fine grid, where there is nothing.
   for (int a = 0; a < 3; ++a) end[a] = a == axis ? std::min(coarse.faceEnd(a), fine.n[a] / 2 + 1) : coarse.n[a];
-#pragma omp parallel for schedule(static) if (fine.size >= kSizeWorthSharing)
+#pragma omp parallel for schedule(static, kPlanesInTurn) if (fine.size >= kSizeWorthSharing)
   for (int k = 0; k < end[2]; ++k) {
     std::vector<float> sums(2 * end[0] + 2);
     float* sum = sums.data() + 1;
@@ -92,7 +92,7 @@ void restrictResidual(const Lattice& fine, const float* from, const Lattice& coa
   const auto sy = fine.stride[1];
   const auto sz = fine.stride[2];
   const int width = 2 * coarse.n[0];
-#pragma omp parallel for schedule(static) if (fine.size >= kSizeWorthSharing)
+#pragma omp parallel for schedule(static, kPlanesInTurn) if (fine.size >= kSizeWorthSharing)
   for (int k = 0; k < coarse.n[2]; ++k) {
     std::vector<float> sum(width);
     for (int j = 0; j < coarse.n[1]; ++j) {
@@ -151,7 +151,7 @@ class CoarseRow {
 void prolongateFaces(const Lattice& coarse, int axis, const float* from, const Lattice& fine, const float* weight,
                      float* to) {
   const int pairs = (fine.faceEnd(0) + 1) / 2;
-#pragma omp parallel for schedule(static) if (fine.size >= kSizeWorthSharing)
+#pragma omp parallel for schedule(static, kPlanesInTurn) if (fine.size >= kSizeWorthSharing)
   for (int k = 0; k < fine.faceEnd(2); ++k) {
     CoarseRow interpolated(coarse, axis);
     for (int j = 0; j < fine.faceEnd(1); ++j) {
@@ -177,7 +177,7 @@ void prolongateFaces(const Lattice& coarse, int axis, const float* from, const L
 
 void prolongateCells(const Lattice& coarse, const float* from, const Lattice& fine, const float* mask, float* to) {
   const int pairs = (fine.n[0] + 1) / 2;
-#pragma omp parallel for schedule(static) if (fine.size >= kSizeWorthSharing)
+#pragma omp parallel for schedule(static, kPlanesInTurn) if (fine.size >= kSizeWorthSharing)
   for (int k = 0; k < fine.n[2]; ++k) {
     CoarseRow interpolated(coarse, -1);
     for (int j = 0; j < fine.n[1]; ++j) {

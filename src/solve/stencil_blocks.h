@@ -103,7 +103,7 @@ void StencilBlocks<Real, Count>::build(const Lattice& l, const std::vector<int>&
   const int components = static_cast<int>(first.size());
   const int row_blocks = (l.n[0] + kLanes - 1) / kLanes;
   std::vector<Plane> planes(l.faceEnd(2));
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int k = 0; k < l.faceEnd(2); ++k) {
     Plane& plane = planes[k];
     plane.blocks.resize(components);
