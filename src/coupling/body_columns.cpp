@@ -8,8 +8,16 @@ namespace {
 // Collects columns entry by entry; what falls on the same unknown of the same body is summed.
 class Collector {
  public:
-  explicit Collector(const StepProblem& problem)
-      : problem_(problem), lattice_(problem.grid.lattice), head_(4 * lattice_.size, -1) {}
+  // head: a place for each unknown, -1 on entry and in the end.
+  Collector(const StepProblem& problem, std::vector<std::int32_t>& head)
+      : problem_(problem), lattice_(problem.grid.lattice), head_(head) {
+    head_.resize(4 * lattice_.size, -1);
+  }
+  ~Collector() {
+    for (const Sum& sum : sums_) head_[sum.place] = -1;
+  }
+  Collector(const Collector&) = delete;
+  Collector& operator=(const Collector&) = delete;
 
   struct Sum {
     std::int32_t place, body, next;
@@ -51,7 +59,7 @@ class Collector {
 
   const StepProblem& problem_;
   const Lattice& lattice_;
-  std::vector<std::int32_t> head_;
+  std::vector<std::int32_t>& head_;
   std::vector<Sum> sums_;
 };
 
@@ -85,7 +93,7 @@ void BodyColumns<double>::set(const StepProblem& p, const Eigen::VectorXd& scale
   entries_.clear();
   begin_.assign(n + 1, 0);
   if (n == 0) return;
-  Collector collector(p);
+  Collector collector(p, head_);
   const auto square = [&](const BodyRow* first, const BodyRow* last, double weight) {
     for (const BodyRow* r = first; r != last; ++r) {
       for (const BodyRow* q = first; q != last; ++q) {

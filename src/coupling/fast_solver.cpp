@@ -24,6 +24,9 @@ constexpr double kSmallFloor = 3.0;
 // tolerance: so much of the contacts' speeds is accepted, and reported.
 constexpr double kAcceptableLaw = 1e-3;
 constexpr double kLeastSpeed = 1e-10;  // m/s
+// A round that is not expected to be the last need only reduce its residual to this part: what the contacts do next
+// would undo the rest.
+constexpr double kRoughPart = 0.03;
 // Rounds after which the response of the bodies in contact is no longer estimated but solved for, and how closely.
 constexpr int kRoundsOnEstimate = 10;
 constexpr double kResponseTolerance = 1e-6;
@@ -33,7 +36,7 @@ constexpr double kLeastCurvature = 1e-8;
 // Impulses of contacts that press are solved for next to those of the small system: moving away from them costs this
 // part of the contact's response. Without it what redundant contacts do one by one is as sensitive as
 // kContactCompliance is small.
-constexpr double kProximity = 1e-4;
+constexpr double kProximity = 1e-4 / kContactCompliance;  // times its compliance
 
 // Symmetric rank-one update of the response K so that it gives the change of twists dv that impulses dg were seen to
 // make; left alone where that would cost its definiteness.
@@ -50,9 +53,11 @@ void learnResponse(const Eigen::VectorXd& dg, const Eigen::VectorXd& dv, Eigen::
 struct FastSolver::Impl {
   StepProblem* problem = nullptr;
   PackedSystem system;
+  std::vector<double> rhs, x, guess;  // kept for their memory
   Eigen::VectorXd compliance;  // of each contact row
+  double first_change = 0.0;   // of the contacts after the last step's first round, relative; 0 if that was enough
 
-  void setBorder(const ContactBorder& border) { system.setBorder(border, compliance, kProximity / kContactCompliance); }
+  void setBorder(const ContactBorder& border) { system.setBorder(border, compliance, kProximity); }
 
   // Response of the twists of the bodies in contact to unit impulses, by one liquid solve each; false if one fails.
   bool solveResponse(const ContactRows& contacts, const CoupledOptions& options, CoupledReport& report,
@@ -61,11 +66,11 @@ struct FastSolver::Impl {
     const Eigen::Index n = system.bodySize();
     for (Eigen::Index i = 0; i < n; ++i) {
       if (contacts.J.col(i).isZero(0.0)) continue;
-      std::vector<double> rhs(system.size(), 0.0), x(rhs);
-      system.setForces(Eigen::VectorXd::Unit(n, i), rhs);
-      const double goal = std::max(options.tolerance, kResponseTolerance) * rhs[system.liquidSize() + i];
-      if (!system.solve(rhs, x, goal, options, report).converged) return false;
-      K.col(i) = system.twists(x);
+      std::vector<double> push(system.size(), 0.0), answer(push);
+      system.setForces(Eigen::VectorXd::Unit(n, i), push);
+      const double goal = std::max(options.tolerance, kResponseTolerance) * push[system.liquidSize() + i];
+      if (!system.solve(push, answer, goal, 0.0, options, report).converged) return false;
+      K.col(i) = system.twists(answer);
     }
     K = 0.5 * (K + K.transpose()).eval();
     return true;
@@ -103,7 +108,7 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
   PackedSystem& system = m.system;
   system.updateSchur();
   const std::size_t tail = system.size();
-  std::vector<double> rhs, x;
+  std::vector<double>&rhs = m.rhs, &x = m.x;
   system.packForces(rhs_fields, rhs);
   system.packMotion(x_fields, x);
   const double rhs_norm = stepNorm(p, rhs_fields);
@@ -115,8 +120,8 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
   Eigen::VectorXd last_push, last_twists;
   ContactStates states;
   const ContactStates open = openStates(contacts);
-  const auto velocities = [&](const std::vector<double>& from) {
-    return Eigen::VectorXd(contacts.J * system.twists(from) + contacts.bias);
+  const auto velocities = [&](const Eigen::VectorXd& twists) {
+    return Eigen::VectorXd(contacts.J * twists + contacts.bias);
   };
   if (count > 0) {
     K = system.estimatedResponse();
@@ -124,7 +129,7 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
     // One cycle on the whole residual says roughly how the bodies would move without contact.
     m.setBorder(makeBorder(contacts, open));
     if (r.size() != 3 * count) r = Eigen::VectorXd::Zero(3 * count);
-    const Eigen::VectorXd w0 = velocities(system.improved(rhs, x));
+    const Eigen::VectorXd w0 = velocities(system.improvedTwists(rhs, x));
     const FrictionReport friction = solveFrictionalContact(D, w0, contacts.friction, small_tolerance, r);
     report.friction_iterations += friction.iterations;
     states = contactStates(contacts, D, D * r + w0, r);
@@ -132,7 +137,8 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
 
   bool lawful = false;
   bool from_open = count == 0;
-  const std::vector<double> guess(x);
+  double expected = m.first_change;  // change of the contacts that this round will ask for
+  m.guess = x;
   KrylovReport last;
   for (int round = 0; round < options.maximum_rounds && !lawful; ++round) {
     if (round == kRoundsOnEstimate) {
@@ -144,24 +150,26 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
     const bool given = round >= kRoundsOnEstimate;
     const ContactBorder border = makeBorder(contacts, given ? open : states);
     m.setBorder(border);
-    const Eigen::VectorXd start = borderUnknowns(border, r);
+    const Eigen::VectorXd start = borderUnknowns(contacts, states, border, r);
     rhs.resize(tail + border.count());
     if (given) {
       system.setForces(gatherBodies(p, rhs_fields.bodies) + contacts.J.transpose() * r, rhs);
     }
     x.resize(tail + border.count());
     for (Eigen::Index i = 0; i < border.count(); ++i) {
-      rhs[tail + i] = border.bias[i] - (system.borderCompliance()[i] - m.compliance[border.entry[i]]) * start[i];
+      rhs[tail + i] = border.bias[i] - kProximity * m.compliance[border.entry[i]] * start[i];
       x[tail + i] = start[i];
     }
     // Given impulses are judged by the velocities that come of them, which the solve's error must not drown.
     const double closer = given ? std::pow(kTightening, round - kRoundsOnEstimate + 1) : 1.0;
-    last = system.solve(rhs, x, std::max(closer * options.tolerance, kRoundOff) * rhs_norm, options, report);
+    const bool rough = count > 0 && !given && expected > kLawFactor * options.tolerance;
+    last = system.solve(rhs, x, std::max(closer * options.tolerance, kRoundOff) * rhs_norm, rough ? kRoughPart : 0.0,
+                        options, report);
     if (!last.converged) {
       // The first guess of what the contacts do may be far off, and then hard to solve for: begin with none that press.
       if (from_open || border.count() == 0) break;
       from_open = true;
-      x = guess;
+      x = m.guess;
       r.setZero();
       states = open;
       continue;
@@ -172,13 +180,14 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
     }
     const Eigen::VectorXd y = Eigen::Map<const Eigen::VectorXd>(x.data() + tail, border.count());
     if (!given) r = impulses(contacts, states, border, y);
-    const Eigen::VectorXd w = velocities(x);
     const Eigen::VectorXd push = contacts.J.transpose() * r;
     const Eigen::VectorXd twists = system.twists(x);
+    const Eigen::VectorXd w = velocities(twists);
     // Below a certain change the solve's own error is all that there is to see.
+    const double error = std::max(options.tolerance, last.residual / rhs_norm);
     const double seen = last_push.size() > 0 ? (contacts.J * (twists - last_twists)).cwiseAbs().maxCoeff() : 0.0;
     const double speed = (w - contacts.bias).cwiseAbs().maxCoeff();
-    if (!given && seen > kLearnable * options.tolerance * speed) {
+    if (!given && seen > kLearnable * error * speed) {
       learnResponse(push - last_push, twists - last_twists, K);
       const Eigen::VectorXd compliance = m.compliance;
       D = contactResponse(contacts, K, m.compliance);
@@ -199,8 +208,12 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
     // No closer than the small system is solved.
     const double small_residual = std::max(small_tolerance, friction.residual);
     const double least = kSmallFloor * small_residual * w0.cwiseAbs().maxCoeff() + kLeastSpeed;
-    lawful = (friction.solved || friction.residual <= kAcceptableLaw) &&
-             change <= std::max(kLawFactor * options.tolerance * scale, least);
+    const bool settled = (friction.solved || friction.residual <= kAcceptableLaw) &&
+                         change <= std::max(kLawFactor * options.tolerance * scale, least);
+    lawful = settled && !rough;
+    const double relative = scale > 0.0 ? change / scale : 0.0;
+    expected = settled ? 0.0 : relative * relative;
+    if (round == 0) m.first_change = settled ? 0.0 : relative;
     report.contact_residual = friction.residual;
     r = next;
     states = contactStates(contacts, D, D * next + w0, next);
@@ -217,7 +230,7 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
     text << "the contacts did not settle in " << report.solves << " solves (" << count << " contacts)";
     return m.notConverged(report, text.str());
   }
-  system.judgeAge(report);
+  system.judgeAge();
   const std::vector<Vector6d> others = x_fields.bodies;
   system.unpackMotion(x, x_fields);
   for (std::size_t b = 0; b < others.size(); ++b) {

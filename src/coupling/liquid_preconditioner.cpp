@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "solve/assign_zero.h"
 #include "solve/blocked_sum.h"
 
 namespace monolith {
@@ -35,8 +36,8 @@ bool LiquidPreconditioner::projects() const {
 }
 
 void LiquidPreconditioner::set(const StepProblem& problem, const FaceBlocks<float>& faces,
-                               const CellBlocks<float>& cells, FaceField<float>&& transfer,
-                               FaceField<float>&& conductance) {
+                               const CellBlocks<float>& cells, const FaceField<float>& transfer,
+                               const FaceField<float>& conductance) {
   problem_ = &problem;
   faces_ = &faces;
   cells_ = &cells;
@@ -51,12 +52,12 @@ void LiquidPreconditioner::set(const StepProblem& problem, const FaceBlocks<floa
     number *= 0.25;
   }
   if (problem.coefficients.viscous) {
-    velocity_.set(l, faces, std::move(transfer), problem.coarse, levels,
+    velocity_.set(l, faces, transfer, problem.coarse, levels,
                   projects() ? kSmootherDegree : kViscousSmootherDegree);
   }
-  pressure_.set(l, problem.coefficients.has_pressure, std::move(conductance));
-  g_.assign(l.size, 0.0f);
-  weight_.assign(l.size, 0.0f);
+  pressure_.set(l, problem.coefficients.has_pressure, conductance);
+  assignZero(l.size, g_);
+  assignZero(l.size, weight_);
   if (!problem.coefficients.viscous) return;
   const auto& normal = problem.coefficients.normal;
   forEachRow(l, [&](std::ptrdiff_t row, int, int) {

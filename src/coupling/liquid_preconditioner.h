@@ -25,7 +25,7 @@ class LiquidPreconditioner {
   // The problem and the compressed operator, with the fields that its construction gives besides, must outlive the
   // preconditioner.
   void set(const StepProblem& problem, const FaceBlocks<float>& faces, const CellBlocks<float>& cells,
-           FaceField<float>&& transfer, FaceField<float>&& conductance);
+           const FaceField<float>& transfer, const FaceField<float>& conductance);
 
   // x ~ the solution for right side r, its flux times flux_scale: U by components, then p^, lattice.size each. Halos of
   // x are filled, those of r not read.

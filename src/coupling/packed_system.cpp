@@ -1,30 +1,35 @@
 #include "coupling/packed_system.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "coupling/body_schur.h"
 
 namespace monolith {
 namespace {
 
-// The bodies' resistance is estimated anew when the solve takes this many times the iterations that it took when
-// fresh...
-constexpr double kStaleIterations = 1.4;
-// ... or the viscous number has changed by this factor.
+// A decade that takes this many times the iterations that it took when the bodies' resistance was fresh has lost some,
+// and so many in all, for each unknown of the bodies, are worth estimating it anew.
+constexpr double kStaleIterations = 1.2;
+constexpr double kWorthRenewing = 0.7;
+// So is a viscous number that has changed by this factor.
 constexpr double kStaleNumber = 1.5;
+// Fewer decades tell nothing about what one costs.
+constexpr double kLeastDecades = 1.0;
+constexpr double kLeastCost = 1.5;  // iterations a decade, below which none is too many
 
 }  // namespace
 
 void PackedSystem::set(StepProblem& problem) {
   problem_ = &problem;
   const StepProblem& p = problem;
-  FaceField<float> transfer, conductance;
-  buildFaceBlocks(p.coefficients, faces_, &transfer, &conductance);
+  krylov_.forget();
+  buildFaceBlocks(p.coefficients, faces_, &transfer_, &conductance_);
   buildCellBlocks(p.coefficients, cells_);
   faces_single_ = faces_.converted<float>();
   cells_single_ = cells_.converted<float>();
   flux_weight_ = std::max(1.0, 2.0 * p.viscous_number);
-  preconditioner_.set(p, faces_single_, cells_single_, std::move(transfer), std::move(conductance));
+  preconditioner_.set(p, faces_single_, cells_single_, transfer_, conductance_);
   scale_.resize(bodySize());
   for (std::size_t i = 0; i < p.free.size(); ++i) scale_.segment<6>(6 * i) = p.twist_scale[i];
   columns_.set(p, scale_);
@@ -33,8 +38,9 @@ void PackedSystem::set(StepProblem& problem) {
   for (std::size_t i = 0; i < p.free.size(); ++i) bodies_.block<6, 6>(6 * i, 6 * i) = p.inertia[i];
   bodies_ = (scale_.cwiseInverse().asDiagonal() * bodies_ * scale_.cwiseInverse().asDiagonal()).eval();
   S_ = bodies_;
+  iterations_ = 0;
+  decades_ = 0.0;
   bodies_ += columns_.ownResistance();
-  border_ = ContactBorder();
 }
 
 std::size_t PackedSystem::bytes() const {
@@ -52,19 +58,21 @@ void PackedSystem::updateSchur() {
                   scale_.asDiagonal();
     resistance_of_ = p.free;
     resistance_number_ = p.viscous_number;
-    fresh_iterations_ = 0;
+    fresh_cost_ = lost_ = 0.0;
     stale_ = false;
   }
   const Eigen::VectorXd inverse = scale_.cwiseInverse();
   S_ = inverse.asDiagonal() * resistance_ * inverse.asDiagonal();
   S_ += bodies_ - columns_.ownResistance();
+  S_inverse_ = S_.ldlt().solve(Eigen::MatrixXd::Identity(bodySize(), bodySize()));
 }
 
-void PackedSystem::judgeAge(const CoupledReport& report) {
-  if (report.solves == 0 || bodySize() == 0) return;
-  const int iterations = report.iterations / report.solves;
-  if (fresh_iterations_ == 0) fresh_iterations_ = std::max(iterations, 5);
-  stale_ = iterations > kStaleIterations * fresh_iterations_ + 1;
+void PackedSystem::judgeAge() {
+  if (decades_ < kLeastDecades || bodySize() == 0) return;
+  const double cost = iterations_ / decades_;
+  if (fresh_cost_ == 0.0) fresh_cost_ = std::max(cost, kLeastCost);
+  if (cost > kStaleIterations * fresh_cost_) lost_ += iterations_ - fresh_cost_ * decades_;
+  stale_ = lost_ > kWorthRenewing * static_cast<double>(bodySize());
 }
 
 void PackedSystem::pack(const StepVector& v, bool forces, std::vector<double>& x) const {
@@ -104,24 +112,21 @@ void PackedSystem::setForces(const Eigen::VectorXd& forces, std::vector<double>&
 
 Eigen::MatrixXd PackedSystem::estimatedResponse() const {
   const Eigen::VectorXd inverse = scale_.cwiseInverse();
-  return inverse.asDiagonal() * S_.ldlt().solve(Eigen::MatrixXd::Identity(bodySize(), bodySize())) *
-         inverse.asDiagonal();
+  return inverse.asDiagonal() * S_inverse_ * inverse.asDiagonal();
 }
 
 void PackedSystem::setBorder(const ContactBorder& physical, const Eigen::VectorXd& compliance, double proximity) {
   const Eigen::VectorXd inverse = scale_.cwiseInverse();
-  border_ = physical;
-  border_.R = physical.R * inverse.asDiagonal();
-  border_.C = inverse.asDiagonal() * physical.C;
-  const Eigen::Index n = bodySize(), k = border_.count();
-  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n + k, n + k);
-  M.topLeftCorner(n, n) = S_;
-  M.bottomLeftCorner(k, n) = -border_.R;
-  M.topRightCorner(n, k) = -border_.C;
+  border_R_ = (physical.R * inverse.asDiagonal()).sparseView();
+  border_C_ = (inverse.asDiagonal() * physical.C).sparseView();
+  const Eigen::Index k = physical.count();
   border_compliance_.resize(k);
-  for (Eigen::Index i = 0; i < k; ++i) border_compliance_[i] = compliance[border_.entry[i]] * (1.0 + proximity);
-  M.bottomRightCorner(k, k).diagonal() = -border_compliance_;
-  if (M.size() > 0) small_.compute(M);
+  for (Eigen::Index i = 0; i < k; ++i) border_compliance_[i] = compliance[physical.entry[i]] * (1.0 + proximity) + physical.mobility[i];
+  if (k == 0) return;
+  const Eigen::MatrixXd moved = border_R_ * S_inverse_;
+  Eigen::MatrixXd response = moved * border_C_;
+  response.diagonal() += border_compliance_;
+  border_response_.compute(response);
 }
 
 template <class Real>
@@ -137,7 +142,7 @@ void PackedSystem::apply(const FaceBlocks<Real>& faces, const CellBlocks<Real>& 
   applyMomentum(l, faces, problem_->coefficients.viscous, U, static_cast<const Real*>(from + 3 * size),
                 Faces<Real>{to, to + size, to + 2 * size});
   applyDivergence(l, cells, U, Real(0), static_cast<const Real*>(nullptr), to + 3 * size);
-  const Eigen::Index n = bodySize(), k = border_.count();
+  const Eigen::Index n = bodySize(), k = border_compliance_.size();
   if (n > 0) columns.addMotion(from + liquid, to);
   if (flux_weight_ != 1.0) {
     const Real weight = static_cast<Real>(flux_weight_);
@@ -150,45 +155,56 @@ void PackedSystem::apply(const FaceBlocks<Real>& faces, const CellBlocks<Real>& 
   Eigen::VectorXd force = bodies_ * v + columns.forces(from);
   if (k > 0) {
     const Eigen::VectorXd r = Eigen::Map<const Vector>(from + liquid + n, k).template cast<double>();
-    force -= border_.C * r;
+    force -= border_C_ * r;
     Eigen::Map<Vector>(to + liquid + n, k) =
-        (-border_.R * v - border_compliance_.cwiseProduct(r)).template cast<Real>();
+        (-(border_R_ * v) - border_compliance_.cwiseProduct(r)).template cast<Real>();
   }
   Eigen::Map<Vector>(to + liquid, n) = force.template cast<Real>();
 }
 
 void PackedSystem::precondition(const std::vector<float>& from, std::vector<float>& to) {
   preconditioner_.apply(from.data(), 1.0f / static_cast<float>(flux_weight_), to.data());
-  const Eigen::Index n = bodySize() + border_.count();
+  const Eigen::Index n = bodySize(), k = border_compliance_.size();
   if (n == 0) return;
-  Eigen::VectorXd r = Eigen::Map<const Eigen::VectorXf>(from.data() + liquidSize(), n).cast<double>();
+  const float* r = from.data() + liquidSize();
+  float* out = to.data() + liquidSize();
   // Bodies feel what the liquid has just been given.
-  r.head(bodySize()) -= columns_single_.forces(to.data());
-  Eigen::Map<Eigen::VectorXf>(to.data() + liquidSize(), n) = small_.solve(r).cast<float>();
+  Eigen::VectorXd force = Eigen::Map<const Eigen::VectorXf>(r, n).cast<double>() - columns_single_.forces(to.data());
+  if (k > 0) {
+    const Eigen::VectorXd free = S_inverse_ * force;
+    const Eigen::VectorXd y = -border_response_.solve(Eigen::Map<const Eigen::VectorXf>(r + n, k).cast<double>() +
+                                                      border_R_ * free);
+    Eigen::Map<Eigen::VectorXf>(out + n, k) = y.cast<float>();
+    force += border_C_ * y;
+  }
+  Eigen::Map<Eigen::VectorXf>(out, n) = (S_inverse_ * force).cast<float>();
 }
 
-std::vector<double> PackedSystem::improved(const std::vector<double>& rhs, const std::vector<double>& x) {
-  std::vector<double> at(x), Ax(x.size(), 0.0);
-  apply(faces_, cells_, columns_, at, Ax);
-  std::vector<float> r(x.size()), z(x.size(), 0.0f);
-  for (std::size_t i = 0; i < x.size(); ++i) r[i] = static_cast<float>(rhs[i] - Ax[i]);
-  precondition(r, z);
-  for (std::size_t i = 0; i < x.size(); ++i) at[i] = x[i] + z[i];
-  return at;
+KrylovMaps PackedSystem::maps() {
+  return {[this](auto& from, auto& to) { apply(faces_, cells_, columns_, from, to); },
+          [this](auto& from, auto& to) { apply(faces_single_, cells_single_, columns_single_, from, to); },
+          [this](auto& from, auto& to) { precondition(from, to); }};
 }
 
-KrylovReport PackedSystem::solve(const std::vector<double>& rhs, std::vector<double>& x, double goal,
+Eigen::VectorXd PackedSystem::improvedTwists(const std::vector<double>& rhs, std::vector<double>& x) {
+  const std::vector<float>& z = krylov_.firstDirection(maps(), rhs, x);
+  const Eigen::VectorXf change = Eigen::Map<const Eigen::VectorXf>(z.data() + liquidSize(), bodySize());
+  return twists(x) + change.cast<double>().cwiseQuotient(scale_);
+}
+
+KrylovReport PackedSystem::solve(const std::vector<double>& rhs, std::vector<double>& x, double goal, double part,
                                  const CoupledOptions& options, CoupledReport& report) {
   KrylovOptions k;
   k.absolute_tolerance = goal;
+  k.relative_tolerance = part;
   k.maximum_iterations = options.maximum_iterations;
-  const KrylovReport done =
-      krylov_.solve({[this](auto& from, auto& to) { apply(faces_, cells_, columns_, from, to); },
-                     [this](auto& from, auto& to) { apply(faces_single_, cells_single_, columns_single_, from, to); },
-                     [this](auto& from, auto& to) { precondition(from, to); }},
-                    rhs, x, k);
+  const KrylovReport done = krylov_.solve(maps(), rhs, x, k);
   report.iterations += done.iterations;
   ++report.solves;
+  if (iterations_ == 0 && done.iterations > 0 && done.residual > 0.0) {
+    iterations_ = done.iterations;
+    decades_ = std::log10(done.initial_residual / done.residual);
+  }
   return done;
 }
 

@@ -9,6 +9,7 @@
 // make, and a residual that weighs it less lets velocities pass whose strain rates are wrong.
 
 #include <Eigen/Dense>
+#include <Eigen/Sparse>
 #include <vector>
 
 #include "coupling/body_columns.h"
@@ -44,15 +45,15 @@ class PackedSystem {
 
   // Contacts that take part, of rows with these compliances, and how much more than that each is given.
   void setBorder(const ContactBorder& physical, const Eigen::VectorXd& compliance, double proximity);
-  const Eigen::VectorXd& borderCompliance() const { return border_compliance_; }
 
-  // x + one cycle of the preconditioner on its residual.
-  std::vector<double> improved(const std::vector<double>& rhs, const std::vector<double>& x);
-  KrylovReport solve(const std::vector<double>& rhs, std::vector<double>& x, double goal, const CoupledOptions& options,
-                     CoupledReport& report);
+  // Twists of x after one cycle of the preconditioner on its residual.
+  Eigen::VectorXd improvedTwists(const std::vector<double>& rhs, std::vector<double>& x);
+  // Until the residual is `goal`, or `part` of what it was at first.
+  KrylovReport solve(const std::vector<double>& rhs, std::vector<double>& x, double goal, double part,
+                     const CoupledOptions& options, CoupledReport& report);
 
-  // S is renewed before it is next used if the solves took clearly more iterations than when it was made...
-  void judgeAge(const CoupledReport& report);
+  // S is renewed before it is next used if solves have lost more iterations by its age than renewing it takes...
+  void judgeAge();
   // ... or one failed.
   void distrust() { stale_ = true; }
   void updateSchur();
@@ -63,6 +64,7 @@ class PackedSystem {
   void apply(const FaceBlocks<Real>& faces, const CellBlocks<Real>& cells, const BodyColumns<Real>& columns,
              std::vector<Real>& x, std::vector<Real>& y) const;
   void precondition(const std::vector<float>& from, std::vector<float>& to);
+  KrylovMaps maps();
 
   StepProblem* problem_ = nullptr;
   FaceBlocks<double> faces_;
@@ -71,6 +73,7 @@ class PackedSystem {
   CellBlocks<float> cells_single_;
   BodyColumns<double> columns_;
   BodyColumns<float> columns_single_;
+  FaceField<float> transfer_, conductance_;  // of the finest level, see buildFaceBlocks()
   LiquidPreconditioner preconditioner_;
   Fgmres krylov_;
   double flux_weight_ = 1.0;
@@ -79,12 +82,18 @@ class PackedSystem {
   Eigen::MatrixXd resistance_;  // of the free bodies, physical units
   std::vector<int> resistance_of_;
   double resistance_number_ = -1.0;
-  int fresh_iterations_ = 0;
+  // Of the first solve since set(): later ones have fewer decades to go.
+  int iterations_ = 0;
+  double decades_ = 0.0;
+  double fresh_cost_ = 0.0;  // iterations a decade just after S was made; 0: not known yet
+  double lost_ = 0.0;        // iterations since then that a fresh S would have saved
   bool stale_ = true;
-  Eigen::MatrixXd S_;
-  ContactBorder border_;
+  Eigen::MatrixXd S_, S_inverse_;
+  // The border in units of the unknowns; a contact involves two bodies.
+  Eigen::SparseMatrix<double, Eigen::RowMajor> border_R_;
+  Eigen::SparseMatrix<double> border_C_;
   Eigen::VectorXd border_compliance_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> small_;  // S bordered by the contacts
+  Eigen::PartialPivLU<Eigen::MatrixXd> border_response_;  // R S^-1 C + compliance
 };
 
 }  // namespace monolith

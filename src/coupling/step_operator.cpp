@@ -1,6 +1,7 @@
 #include "coupling/step_operator.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace monolith {
 
@@ -68,32 +69,55 @@ void StepOperator::apply(StepVector& x, StepVector& y) {
   }
 }
 
-void StepOperator::bodyForces(StepVector& x, std::vector<Vector6d>& forces) const {
+void StepOperator::bodyForces(StepVector& x, std::vector<Vector6d>& forces) {
   const StaggeredCoefficients<double>& c = *coefficients_;
   const Lattice& l = c.lattice;
   for (auto& force : forces) force.setZero();
   for (const BodyRow& row : rows_->divergence) forces[row.body] -= row.coefficient * x.pressure[row.sample];
   if (!c.viscous) return;
   for (auto& field : x.velocity) fillHalo(l, field);
+  if (solid_.size() != l.size) solid_.assign(l.size, 0.0);
+  // Bodies that share a sample feel each other's motion. liquid(sample), weight(sample): stress is liquid + weight * solid.
+  const auto add = [&](const std::vector<BodyRow>& rows, auto&& liquid, auto&& weight) {
+    for (const BodyRow& row : rows) solid_[row.sample] += row.coefficient.dot(x.bodies[row.body]);
+    for (const BodyRow& row : rows) {
+      forces[row.body] += row.coefficient * (liquid(row.sample) + weight(row.sample) * solid_[row.sample]);
+    }
+    for (const BodyRow& row : rows) solid_[row.sample] = 0.0;
+  };
   for (int a = 0; a < 3; ++a) {
     const auto& u = x.velocity[a];
-    for (const BodyRow& row : rows_->normal[a]) {
-      const double stress = c.normal[a][row.sample] * (u[row.sample + l.stride[a]] - u[row.sample]);
-      forces[row.body] += row.coefficient * stress;
-    }
-    for (const BodyRow& row : rows_->drag[a]) {
-      forces[row.body] -= row.coefficient * (c.drag[a][row.sample] * u[row.sample]);
-    }
+    const auto& normal = c.normal[a];
+    add(rows_->normal[a], [&](std::ptrdiff_t s) { return normal[s] * (u[s + l.stride[a]] - u[s]); },
+        [&](std::ptrdiff_t s) { return normal[s]; });
     const auto [first, second] = kShearPairs[a];
     const auto& v = x.velocity[first];
     const auto& w = x.velocity[second];
-    for (const BodyRow& row : rows_->shear[a]) {
-      const auto e = row.sample;
-      const double stress = c.shear[a][0][e] * (v[e] - v[e - l.stride[second]]) +
-                            c.shear[a][1][e] * (w[e] - w[e - l.stride[first]]);
-      forces[row.body] += row.coefficient * stress;
+    const auto& shear = c.shear[a];
+    add(rows_->shear[a],
+        [&, sv = l.stride[second], sw = l.stride[first]](std::ptrdiff_t s) {
+          return shear[0][s] * (v[s] - v[s - sv]) + shear[1][s] * (w[s] - w[s - sw]);
+        },
+        [](std::ptrdiff_t) { return 1.0; });
+    for (const BodyRow& row : rows_->drag[a]) {
+      const double slip = row.coefficient.dot(x.bodies[row.body]) - u[row.sample];
+      forces[row.body] += row.coefficient * (c.drag[a][row.sample] * slip);
     }
   }
+}
+
+double StepOperator::largestDivergence(StepVector& x) {
+  const Lattice& l = coefficients_->lattice;
+  for (auto& field : x.velocity) fillHalo(l, field);
+  divergence_.resize(l.size, 0.0);
+  computeDivergence(*coefficients_, x.velocity, divergence_);
+  for (const BodyRow& row : rows_->divergence) {
+    divergence_[row.sample] += row.coefficient.dot(x.bodies[row.body]);
+  }
+  double largest = 0.0;
+#pragma omp parallel for simd schedule(static) reduction(max : largest)
+  for (std::size_t i = 0; i < l.size; ++i) largest = std::max(largest, std::abs(divergence_[i]));
+  return largest;
 }
 
 }  // namespace monolith

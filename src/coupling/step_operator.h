@@ -35,14 +35,16 @@ class StepOperator {
   // Fills the halos of x on periodic axes.
   void apply(StepVector& x, StepVector& y);
 
-  // The bodies' part of apply() for twists of zero, at the cost of the bodies' rows alone: what the liquid's velocity and
-  // pressure do to each body.
-  void bodyForces(StepVector& x, std::vector<Vector6d>& forces) const;
+  // The bodies' part of apply(), at the cost of the bodies' rows alone; and the largest entry of its divergence.
+  void bodyForces(StepVector& x, std::vector<Vector6d>& forces);
+  double largestDivergence(StepVector& x);
 
  private:
   const StaggeredCoefficients<double>* coefficients_ = nullptr;
   const BodyRows* rows_ = nullptr;
   StressSamples<double> stress_;
+  std::vector<double> solid_;  // per sample; zero between calls
+  std::vector<double> divergence_;
 };
 
 }  // namespace monolith

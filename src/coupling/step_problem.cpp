@@ -231,22 +231,19 @@ void StepProblem::apply(StepVector& x, StepVector& y) const {
 
 void StepProblem::results(StepVector& x, const Eigen::Vector3d& gravity, std::vector<Wrench>& liquid,
                           double& divergence) const {
-  StepVector y;
-  op_.apply(x, y);
-  double largest = 0.0;
-#pragma omp parallel for simd schedule(static) reduction(max : largest)
-  for (std::size_t i = 0; i < y.pressure.size(); ++i) largest = std::max(largest, std::abs(y.pressure[i]));
-  divergence = largest / grid.h;
+  std::vector<Vector6d> forces(bodies->size());
+  op_.bodyForces(x, forces);
+  divergence = op_.largestDivergence(x) / grid.h;
   for (const StickingLiquid& s : sticking) {
     const Vector6d row = velocityRow(s.axis, s.position, (*bodies)[s.body].p_WBcm);
-    y.bodies[s.body] += s.fraction * (row.dot(x.bodies[s.body]) - stickingVelocity(s, row, gravity)) * row;
+    forces[s.body] += s.fraction * (row.dot(x.bodies[s.body]) - stickingVelocity(s, row, gravity)) * row;
   }
-  for (const EnclosedWeight& weight : enclosed) y.bodies[weight.body] -= enclosedImpulse(weight, gravity);
+  for (const EnclosedWeight& weight : enclosed) forces[weight.body] -= enclosedImpulse(weight, gravity);
   const double force_scale = impulse_scale / dt;
   liquid.assign(bodies->size(), Wrench());
   for (std::size_t b = 0; b < bodies->size(); ++b) {
-    liquid[b].force = -force_scale * y.bodies[b].head<3>();
-    liquid[b].torque = -force_scale * y.bodies[b].tail<3>();
+    liquid[b].force = -force_scale * forces[b].head<3>();
+    liquid[b].torque = -force_scale * forces[b].tail<3>();
   }
 }
 

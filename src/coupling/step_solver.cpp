@@ -1,5 +1,6 @@
 #include "coupling/step_solver.h"
 
+#include <Eigen/Sparse>
 #include <algorithm>
 #include <cmath>
 
@@ -16,7 +17,10 @@ void addCompliance(const ContactRows& contacts, Eigen::MatrixXd& response, Eigen
 }
 
 Eigen::MatrixXd contactResponse(const ContactRows& contacts, const Eigen::MatrixXd& K, Eigen::VectorXd& compliance) {
-  Eigen::MatrixXd D = contacts.J * K * contacts.J.transpose();
+  // A contact involves two bodies.
+  const Eigen::SparseMatrix<double, Eigen::RowMajor> J = contacts.J.sparseView();
+  const Eigen::MatrixXd moved = J * K;
+  Eigen::MatrixXd D = moved * J.transpose();
   D = 0.5 * (D + D.transpose()).eval();
   addCompliance(contacts, D, compliance);
   return D;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "solve/assign_zero.h"
 #include "solve/blocked_sum.h"
 
 namespace monolith {
@@ -127,6 +128,34 @@ void scaleInto(const std::vector<From>& x, double a, std::vector<To>& y) {
 
 }  // namespace
 
+template <class Real>
+std::vector<Real>& Fgmres::Space<Real>::room(std::vector<std::vector<Real>>& vectors, std::size_t& clean,
+                                             std::size_t index, std::size_t size) {
+  if (vectors.size() <= index) vectors.resize(index + 1);
+  for (; clean <= index; ++clean) assignZero(size, vectors[clean]);
+  // The length of a border may have changed.
+  vectors[index].resize(size, Real(0));
+  return vectors[index];
+}
+
+void Fgmres::forget() {
+  single_.clean_basis = single_.clean_directions = 0;
+  double_.clean_basis = double_.clean_directions = 0;
+  work_.clear();
+  z_single_.clear();
+}
+
+const std::vector<float>& Fgmres::firstDirection(const KrylovMaps& maps, const std::vector<double>& b,
+                                                 std::vector<double>& x) {
+  work_.resize(b.size(), 0.0);
+  residual(maps, b, x);
+  std::vector<float>& r = single_.basisRoom(0, b.size());
+  std::vector<float>& z = single_.directionRoom(0, b.size());
+  scaleInto(work_, 1.0, r);
+  maps.precondition(r, z);
+  return z;
+}
+
 double Fgmres::residual(const KrylovMaps& maps, const std::vector<double>& b, std::vector<double>& x) {
   maps.apply(x, work_);
   return std::sqrt(blockedSum<double>(b.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -163,21 +192,15 @@ int Fgmres::cycle(const KrylovMaps& maps, double norm, double goal, int most, Sp
   Eigen::VectorXd rhs = Eigen::VectorXd::Zero(most + 1);
   std::vector<Eigen::JacobiRotation<double>> rotations(most);
   rhs[0] = 1.0;
-  // The unknowns may be others than those of the last solve, of which nothing may be left.
-  const auto room = [&](auto& vectors, std::size_t& clean, std::size_t index) -> std::vector<Real>& {
-    if (vectors.size() <= index) vectors.resize(index + 1);
-    for (; clean <= index; ++clean) vectors[clean].assign(work_.size(), Real(0));
-    return vectors[index];
-  };
-  scaleInto(work_, 1.0 / norm, room(space.basis, space.clean_basis, 0));
+  const std::size_t size = work_.size();
+  scaleInto(work_, 1.0 / norm, space.basisRoom(0, size));
   std::vector<double> estimates(kPatience, 1.0);
   int used = 0;
   bool stop = false;
   while (used < most && !stop) {
     const int j = used;
-    room(space.basis, space.clean_basis, j + 1);
-    std::vector<Real>& w = space.basis[j + 1];
-    extend(maps, space.basis[j], room(space.directions, space.clean_directions, j), w);
+    std::vector<Real>& w = space.basisRoom(j + 1, size);
+    extend(maps, space.basis[j], space.directionRoom(j, size), w);
     // Modified Gram-Schmidt, whose coefficients are h = (I + L)^-1 V^T w with L the strictly lower part of V^T V
     // (Swirydowicz et al. 2021, Numer. Linear Algebra Appl. 28, e2343): it reads the basis twice, not four times.
     Eigen::VectorXd h, row;
@@ -207,10 +230,7 @@ int Fgmres::cycle(const KrylovMaps& maps, double norm, double goal, int most, Sp
 KrylovReport Fgmres::solve(const KrylovMaps& maps, const std::vector<double>& b, std::vector<double>& x,
                            const KrylovOptions& options) {
   KrylovReport report;
-  single_.clean_basis = single_.clean_directions = 0;
-  double_.clean_basis = double_.clean_directions = 0;
-  work_.assign(b.size(), 0.0);
-  z_single_.assign(double_.basis.empty() ? 0 : b.size(), 0.0f);
+  work_.resize(b.size(), 0.0);
   report.residual = residual(maps, b, x);
   const double none = std::sqrt(dot(b, b));
   if (report.residual > none) {
@@ -221,10 +241,11 @@ KrylovReport Fgmres::solve(const KrylovMaps& maps, const std::vector<double>& b,
     report.residual = none;
   }
   report.initial_residual = report.residual;
-  report.converged = report.residual <= options.absolute_tolerance;
+  const double target = std::max(options.absolute_tolerance, options.relative_tolerance * report.residual);
+  report.converged = report.residual <= target;
   bool single = true;
   while (!report.converged && report.iterations < options.maximum_iterations && std::isfinite(report.residual)) {
-    const double wanted = kMargin * options.absolute_tolerance / report.residual;
+    const double wanted = kMargin * target / report.residual;
     const double goal = single ? std::max(wanted, kLeastReduction) : wanted;
     const int most = std::min(options.restart, options.maximum_iterations - report.iterations);
     const int used = single ? cycle(maps, report.residual, goal, most, single_, x)
@@ -232,7 +253,7 @@ KrylovReport Fgmres::solve(const KrylovMaps& maps, const std::vector<double>& b,
     report.iterations += used;
     const double last = report.residual;
     report.residual = residual(maps, b, x);
-    report.converged = report.residual <= options.absolute_tolerance;
+    report.converged = report.residual <= target;
     if (report.converged) continue;
     if (used == most) {
       // A whole cycle for little: perhaps it is the precision.

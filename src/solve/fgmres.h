@@ -14,6 +14,7 @@ namespace monolith {
 
 struct KrylovOptions {
   double absolute_tolerance = 0.0;  // on |b - A x|_2
+  double relative_tolerance = 0.0;  // or so much of what it is at first, if that is more
   int maximum_iterations = 200;
   int restart = 60;  // directions kept; memory grows only as they are used
 };
@@ -39,6 +40,13 @@ class Fgmres {
   [[nodiscard]] KrylovReport solve(const KrylovMaps& maps, const std::vector<double>& b, std::vector<double>& x,
                                    const KrylovOptions& options);
 
+  // P^-1 (b - A x): where a first step would go. Valid until the next call.
+  [[nodiscard]] const std::vector<float>& firstDirection(const KrylovMaps& maps, const std::vector<double>& b,
+                                                         std::vector<double>& x);
+
+  // The unknowns may be others from now on than those of the solves before.
+  void forget();
+
   std::size_t bytes() const;
 
  private:
@@ -46,7 +54,16 @@ class Fgmres {
   struct Space {
     std::vector<std::vector<Real>> basis;               // V
     std::vector<std::vector<Real>> directions;          // Z = P^-1 V
-    std::size_t clean_basis = 0, clean_directions = 0;  // of them: zero where this solve has no unknowns
+    std::size_t clean_basis = 0, clean_directions = 0;  // of them: zero where there are no unknowns
+
+    std::vector<Real>& basisRoom(std::size_t index, std::size_t size) { return room(basis, clean_basis, index, size); }
+    std::vector<Real>& directionRoom(std::size_t index, std::size_t size) {
+      return room(directions, clean_directions, index, size);
+    }
+
+   private:
+    static std::vector<Real>& room(std::vector<std::vector<Real>>& vectors, std::size_t& clean, std::size_t index,
+                                   std::size_t size);
   };
 
   double residual(const KrylovMaps& maps, const std::vector<double>& b, std::vector<double>& x);

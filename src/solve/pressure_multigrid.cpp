@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "solve/assign_zero.h"
 #include "solve/staggered_transfer.h"
 
 namespace monolith {
@@ -25,57 +26,59 @@ float liftedToAir(float g, bool inside) {
 }  // namespace
 
 void PressureMultigrid::set(const Lattice& l, const std::vector<std::uint8_t>& has_pressure,
-                            FaceField<float> conductance) {
+                            const FaceField<float>& conductance) {
   std::size_t count = 1;
   for (Lattice c = l; canCoarsen(c); c = coarsened(c)) ++count;
   levels_.resize(count);
-  Network network;
-  network.kind.assign(l.size, kOutside);
-  for (std::size_t cell = 0; cell < l.size; ++cell) network.kind[cell] = has_pressure[cell] ? kLiquid : kOutside;
-  fillHalo(l, network.kind);
-  network.to_air.assign(l.size, 0.0f);
-  std::vector<std::uint8_t> kind = network.kind;
+  Network& network = finest_;
+  std::vector<std::uint8_t>& pressed = network.beyond;  // for now
+  pressed = has_pressure;
+  fillHalo(l, pressed);
+  network.kind.resize(l.size);
+#pragma omp parallel for simd schedule(static)
+  for (std::size_t c = 0; c < l.size; ++c) network.kind[c] = pressed[c] ? kLiquid : kOutside;
+  assignZero(l.size, network.to_air);
   forEachRow(l, [&](std::ptrdiff_t row, int, int) {
     for (auto c = row; c < row + l.faceEnd(0); ++c) {
       for (int a = 0; a < 3; ++a) {
         const auto sa = l.stride[a];
         const float low = conductance[a][c], high = conductance[a][c + sa];
-        if (network.kind[c] != kLiquid) {
-          if (low > 0.0f || high > 0.0f) kind[c] = kAir;
+        if (!pressed[c]) {
+          if (low > 0.0f || high > 0.0f) network.kind[c] = kAir;
           continue;
         }
-        if (network.kind[c - sa] != kLiquid) network.to_air[c] += low;
-        if (network.kind[c + sa] != kLiquid) network.to_air[c] += high;
+        if (!pressed[c - sa]) network.to_air[c] += low;
+        if (!pressed[c + sa]) network.to_air[c] += high;
       }
     }
   });
   for (int a = 0; a < 3; ++a) {
     const auto sa = l.stride[a];
+    assignZero(l.size, network.conductance[a]);
     forEachRow(l, [&](std::ptrdiff_t row, int, int) {
       for (auto f = row; f < row + l.faceEnd(0); ++f) {
-        if (network.kind[f - sa] != kLiquid || network.kind[f] != kLiquid) conductance[a][f] = 0.0f;
+        network.conductance[a][f] = pressed[f - sa] && pressed[f] ? conductance[a][f] : 0.0f;
       }
     });
-    fillHalo(l, conductance[a]);
+    fillHalo(l, network.conductance[a]);
   }
-  network.kind.swap(kind);
   fillHalo(l, network.kind);
-  network.conductance = std::move(conductance);
-  network.beyond.resize(l.size);
+#pragma omp parallel for simd schedule(static)
   for (std::size_t c = 0; c < l.size; ++c) network.beyond[c] = network.kind[c] == kAir;
   levels_[0].lattice = l;
   finish(network, levels_[0]);
+  Network last;
   for (std::size_t index = 1; index < count; ++index) {
     Network coarse;
     levels_[index].lattice = coarsened(levels_[index - 1].lattice);
-    coarsen(levels_[index - 1].lattice, network, levels_[index].lattice, coarse);
+    coarsen(levels_[index - 1].lattice, index == 1 ? network : last, levels_[index].lattice, coarse);
     finish(coarse, levels_[index]);
     findExtension(coarse, levels_[index]);
-    network = std::move(coarse);
+    last = std::move(coarse);
   }
   levels_.back().range.ratio = count > 1 ? kCoarsestRatio : kRatio;
   coarsest_cells_.clear();
-  if (count > 1) invert(network, levels_.back());
+  if (count > 1) invert(last, levels_.back());
 }
 
 void PressureMultigrid::coarsen(const Lattice& from, const Network& fine, const Lattice& l, Network& coarse) const {
@@ -125,8 +128,8 @@ void PressureMultigrid::coarsen(const Lattice& from, const Network& fine, const 
 
 void PressureMultigrid::finish(const Network& network, Level& level) const {
   const Lattice& l = level.lattice;
-  for (auto* field : {&level.x, &level.next, &level.d, &level.mask}) field->assign(l.size, 0.0f);
-  if (&level != &levels_[0]) level.b.assign(l.size, 0.0f);
+  for (auto* field : {&level.x, &level.next, &level.d, &level.mask}) assignZero(l.size, *field);
+  if (&level != &levels_[0]) assignZero(l.size, level.b);
   level.blocks.build(l, {0}, [&](int, std::ptrdiff_t row, int width, auto& k) {
     for (int i = 0; i < width; ++i) {
       const auto c = row + i;

@@ -19,7 +19,7 @@ namespace monolith {
 class PressureMultigrid {
  public:
   // The network of the finest level, its halo filled: the coarser ones follow from it.
-  void set(const Lattice& lattice, const std::vector<std::uint8_t>& has_pressure, FaceField<float> conductance);
+  void set(const Lattice& lattice, const std::vector<std::uint8_t>& has_pressure, const FaceField<float>& conductance);
 
   // Approximate solution x of L x = b, zero outside of cells with pressure; its halo is filled. It may be changed in
   // place and is valid until the next call.
@@ -63,6 +63,7 @@ class PressureMultigrid {
   void descend(std::size_t index);
 
   std::vector<Level> levels_;
+  Network finest_;  // kept for its memory
   std::vector<std::int32_t> coarsest_cells_;  // if few enough to be solved directly
   Eigen::MatrixXf inverse_;
 };

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "solve/assign_zero.h"
+
 namespace monolith {
 namespace {
 
@@ -127,7 +129,7 @@ void buildFaceBlocks(const StaggeredCoefficients<From>& c, FaceBlocks<Real>& out
   const Lattice& l = c.lattice;
   for (auto* fields : {transfer, conductance}) {
     if (fields == nullptr) continue;
-    for (auto& field : *fields) field.assign(l.size, 0.0f);
+    for (auto& field : *fields) assignZero(l.size, field);
   }
   // Along the rows of their own axis faces on the low wall have no unknown.
   const std::vector<int> first = {l.periodic[0] ? 0 : 1, 0, 0};

@@ -1,5 +1,6 @@
 #include "solve/velocity_multigrid.h"
 
+#include "solve/assign_zero.h"
 #include "solve/staggered_transfer.h"
 
 namespace monolith {
@@ -14,7 +15,7 @@ Faces<const float> constView(FaceField<float>& f) { return {f[0].data(), f[1].da
 
 }  // namespace
 
-void VelocityMultigrid::set(const Lattice& lattice, const FaceBlocks<float>& fine, FaceField<float>&& transfer,
+void VelocityMultigrid::set(const Lattice& lattice, const FaceBlocks<float>& fine, const FaceField<float>& transfer,
                             const std::vector<StaggeredCoefficients<float>>& coarse, std::size_t count,
                             int smoother_degree) {
   degree_ = smoother_degree;
@@ -24,17 +25,18 @@ void VelocityMultigrid::set(const Lattice& lattice, const FaceBlocks<float>& fin
     level.lattice = i == 0 ? lattice : coarse[i].lattice;
     if (i == 0) {
       level.blocks = &fine;
-      level.transfer = std::move(transfer);
+      level.transfer = &transfer;
     } else {
-      buildFaceBlocks(coarse[i], level.own, &level.transfer, nullptr);
+      buildFaceBlocks(coarse[i], level.own, &level.own_transfer, nullptr);
       level.blocks = &level.own;
+      level.transfer = &level.own_transfer;
     }
     // Zero where nothing is written: other faces than last time may have an unknown now.
     for (auto* fields : {&level.x, &level.next, &level.d}) {
-      for (auto& field : *fields) field.assign(level.lattice.size, 0.0f);
+      for (auto& field : *fields) assignZero(level.lattice.size, field);
     }
     if (i > 0) {
-      for (auto& field : level.b) field.assign(level.lattice.size, 0.0f);
+      for (auto& field : level.b) assignZero(level.lattice.size, field);
     }
     level.range.largest = static_cast<float>(kLargestScaled);
     level.range.ratio = count > 1 && i + 1 == count ? kCoarsestRatio : kRatio;
@@ -74,7 +76,7 @@ void VelocityMultigrid::descend(std::size_t index) {
   coarse.right = constView(coarse.b);
   descend(index + 1);
   for (int a = 0; a < 3; ++a) {
-    prolongateFaces(coarse.lattice, a, coarse.x[a].data(), l, level.transfer[a].data(), level.x[a].data());
+    prolongateFaces(coarse.lattice, a, coarse.x[a].data(), l, (*level.transfer)[a].data(), level.x[a].data());
     fillHalo(l, level.x[a]);
   }
   smooth(level, degree_, false);
@@ -90,7 +92,7 @@ std::size_t VelocityMultigrid::bytes() const {
   std::size_t sum = 0;
   for (const Level& level : levels_) {
     sum += level.own.bytes();
-    for (const auto* fields : {&level.transfer, &level.x, &level.next, &level.b, &level.d}) {
+    for (const auto* fields : {&level.own_transfer, &level.x, &level.next, &level.b, &level.d}) {
       for (const auto& field : *fields) sum += field.size() * sizeof(float);
     }
   }

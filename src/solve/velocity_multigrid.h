@@ -14,9 +14,9 @@ namespace monolith {
 class VelocityMultigrid {
  public:
   // The finest level with its transfer weights, and the levels below it: coarse[1] to coarse[count - 1], each
-  // coarsened() of the one before. `fine` must outlive the multigrid. smoother_degree: Chebyshev steps before and
+  // coarsened() of the one before. `fine` and `transfer` must outlive the multigrid. smoother_degree: Chebyshev steps before and
   // after.
-  void set(const Lattice& lattice, const FaceBlocks<float>& fine, FaceField<float>&& transfer,
+  void set(const Lattice& lattice, const FaceBlocks<float>& fine, const FaceField<float>& transfer,
            const std::vector<StaggeredCoefficients<float>>& coarse, std::size_t count, int smoother_degree);
   // Approximate solution x of A x = b, zero where there is no unknown; valid until the next call.
   Faces<const float> cycle(const Faces<const float>& b);
@@ -28,7 +28,8 @@ class VelocityMultigrid {
     Lattice lattice;
     FaceBlocks<float> own;
     const FaceBlocks<float>* blocks = nullptr;
-    FaceField<float> transfer, x, next, b, d;
+    FaceField<float> own_transfer, x, next, b, d;
+    const FaceField<float>* transfer = nullptr;
     ChebyshevRange range;
     Faces<const float> right{};
   };

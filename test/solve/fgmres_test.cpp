@@ -102,6 +102,7 @@ TEST(Fgmres, NothingIsLeftOfUnknownsThatAreNoMore) {
         }
       };
     };
+    krylov.forget();
     std::vector<double> b(kSize, 0.0), x(kSize, 0.0);
     for (std::size_t i = 0; i < kSize; i += stride) b[i] = std::cos(i);
     KrylovOptions options;

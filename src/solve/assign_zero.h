@@ -1,0 +1,16 @@
+#pragma once
+// Long arrays of zeros, written by all threads.
+
+#include <cstddef>
+#include <vector>
+
+namespace monolith {
+
+template <class Value>
+void assignZero(std::size_t size, std::vector<Value>& v) {
+  v.resize(size);
+#pragma omp parallel for simd schedule(static)
+  for (std::size_t i = 0; i < size; ++i) v[i] = Value(0);
+}
+
+}  // namespace monolith
