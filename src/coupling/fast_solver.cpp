@@ -27,6 +27,8 @@ constexpr double kLeastSpeed = 1e-10;  // m/s
 // A round that is not expected to be the last need only reduce its residual to this part: what the contacts do next
 // would undo the rest.
 constexpr double kRoughPart = 0.03;
+// Nor need Coulomb's law be solved for more closely after it, or before the first.
+constexpr double kRoughSmallTolerance = 1e-4;
 // Rounds after which the response of the bodies in contact is no longer estimated but solved for, and how closely.
 constexpr int kRoundsOnEstimate = 10;
 constexpr double kResponseTolerance = 1e-6;
@@ -130,7 +132,7 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
     m.setBorder(makeBorder(contacts, open));
     if (r.size() != 3 * count) r = Eigen::VectorXd::Zero(3 * count);
     const Eigen::VectorXd w0 = velocities(system.improvedTwists(rhs, x));
-    const FrictionReport friction = solveFrictionalContact(D, w0, contacts.friction, small_tolerance, r);
+    const FrictionReport friction = solveFrictionalContact(D, w0, contacts.friction, std::max(small_tolerance, kRoughSmallTolerance), r);
     report.friction_iterations += friction.iterations;
     states = contactStates(contacts, D, D * r + w0, r);
   }
@@ -138,7 +140,7 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
   bool lawful = false;
   bool from_open = count == 0;
   double expected = m.first_change;  // change of the contacts that this round will ask for
-  m.guess = x;
+  if (count > 0) m.guess = x;
   KrylovReport last;
   for (int round = 0; round < options.maximum_rounds && !lawful; ++round) {
     if (round == kRoundsOnEstimate) {
@@ -201,12 +203,13 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
     // moves no body, its impulses obey Coulomb's law here.
     Eigen::VectorXd next = r;
     const Eigen::VectorXd w0 = w - D * r + m.compliance.cwiseProduct(r);
-    const FrictionReport friction = solveFrictionalContact(D, w0, contacts.friction, small_tolerance, next);
+    const double closely = rough ? std::max(small_tolerance, kRoughSmallTolerance) : small_tolerance;
+    const FrictionReport friction = solveFrictionalContact(D, w0, contacts.friction, closely, next);
     report.friction_iterations += friction.iterations;
     const double change = (D * (next - r)).cwiseAbs().maxCoeff();
     const double scale = std::max((D * next).cwiseAbs().maxCoeff(), speed);
     // No closer than the small system is solved.
-    const double small_residual = std::max(small_tolerance, friction.residual);
+    const double small_residual = std::max(closely, friction.residual);
     const double least = kSmallFloor * small_residual * w0.cwiseAbs().maxCoeff() + kLeastSpeed;
     const bool settled = (friction.solved || friction.residual <= kAcceptableLaw) &&
                          change <= std::max(kLawFactor * options.tolerance * scale, least);

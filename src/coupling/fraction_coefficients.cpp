@@ -188,7 +188,7 @@ void buildFractionRows(const MacGrid& grid, const SolidFractions& solids, const 
 }
 
 void buildCoarseFractionLevels(const Lattice& lattice, const FractionGeometry& geometry,
-                               const std::vector<double>& liquid_distance, double viscous_number,
+                               const std::vector<double>& liquid_distance, double viscous_number, double least_number,
                                std::vector<StaggeredCoefficients<float>>& levels) {
   const bool viscous = viscous_number > 0.0;
   Lattice l = lattice;
@@ -196,7 +196,7 @@ void buildCoarseFractionLevels(const Lattice& lattice, const FractionGeometry& g
   std::vector<double> distance = liquid_distance;
   StaggeredCoefficients<double> coefficients;
   std::size_t count = 1;
-  while (canCoarsen(l)) {
+  while (canCoarsen(l) && viscous_number > least_number) {
     const Lattice coarse = coarsened(l);
     std::vector<double> to;
     for (int a = 0; a < 3; ++a) {

@@ -54,9 +54,10 @@ void buildFractionCoefficients(const Lattice& lattice, const FractionGeometry& g
 void buildFractionRows(const MacGrid& grid, const SolidFractions& solids, const std::vector<RigidBody>& bodies,
                        const StaggeredCoefficients<double>& coefficients, BodyRows& out);
 
-// The coarser levels, in the multigrid's precision: the same construction on averaged geometry.
+// The coarser levels, in the multigrid's precision: the same construction on averaged geometry; none below a level whose
+// viscous number is least_number or less.
 void buildCoarseFractionLevels(const Lattice& lattice, const FractionGeometry& geometry,
-                               const std::vector<double>& liquid_distance, double viscous_number,
+                               const std::vector<double>& liquid_distance, double viscous_number, double least_number,
                                std::vector<StaggeredCoefficients<float>>& levels);
 
 }  // namespace monolith

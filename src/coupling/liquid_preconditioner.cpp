@@ -8,8 +8,6 @@
 namespace monolith {
 namespace {
 
-// Below this the mass term dominates and one smoothing sweep on the level is a solve.
-constexpr double kLeastViscousNumber = 0.05;
 // Up to here the projection takes fewer iterations.
 constexpr double kLargestProjected = 20.0;
 // Beyond, more smoothing pays: fewer vectors to orthogonalise.
@@ -47,7 +45,7 @@ void LiquidPreconditioner::set(const StepProblem& problem, const FaceBlocks<floa
     number *= *std::max_element(problem.cell_viscosity.begin(), problem.cell_viscosity.end());
   }
   std::size_t levels = 1;
-  while (levels < problem.coarse.size() && number > kLeastViscousNumber) {
+  while (levels < problem.coarse.size() && number > kLeastCoarsenedNumber) {
     ++levels;
     number *= 0.25;
   }

@@ -15,6 +15,7 @@ constexpr double kLeastFluid = 1e-3;  // a face with less of it is closed: no ti
 constexpr double kOnSurface = 1e-3;
 constexpr double kUncut = 0.9;  // cell widths: a surface farther than half the diagonal from its centre does not cut a cell
 constexpr int kMargin = 2;  // cells around a body in which its distance is wanted
+constexpr double kHardlyMoved = 1e-6;  // cell widths, of any of its points: far below what the solve resolves
 
 int wrapped(int index, int n) { return ((index % n) + n) % n; }
 
@@ -85,7 +86,7 @@ SolidSampler::SolidSampler(const MacGrid& grid) : grid_(grid) {
   }
 }
 
-void SolidSampler::sample(const std::vector<RigidBody>& bodies, SolidFractions& out) const {
+void SolidSampler::sample(const std::vector<RigidBody>& bodies, SolidFractions& out) {
   for (int a = 0; a < 3; ++a) {
     copyField(walls_.fluid[a], out.fluid[a]);
     copyField(walls_.distance[a], out.distance[a]);
@@ -94,11 +95,26 @@ void SolidSampler::sample(const std::vector<RigidBody>& bodies, SolidFractions& 
   copyField(walls_.cell_distance, out.cell_distance);
   copyField(walls_.cell_fluid, out.cell_fluid);
   out.bodies.resize(bodies.size());
-  for (std::size_t b = 0; b < bodies.size(); ++b) sampleBody(bodies[b], static_cast<int>(b), out);
+  samples_.resize(bodies.size());
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (!serves(samples_[b], bodies[b])) sampleBody(bodies[b], samples_[b]);
+    addBody(samples_[b], static_cast<int>(b), out);
+  }
   close(out);
 }
 
-void SolidSampler::sampleBody(const RigidBody& body, int index, SolidFractions& out) const {
+bool SolidSampler::serves(const BodySample& sample, const RigidBody& body) const {
+  if (sample.shape != body.distance.get()) return false;
+  const Eigen::Isometry3d now = body.pose();
+  const Eigen::AlignedBox3d box = body.distance->bounds();
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d p = box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner));
+    if ((now * p - sample.pose * p).norm() > kHardlyMoved * grid_.h) return false;
+  }
+  return true;
+}
+
+void SolidSampler::sampleBody(const RigidBody& body, BodySample& out) const {
   const Lattice& l = grid_.lattice;
   const double h = grid_.h;
   const Eigen::Isometry3d X_WB = body.pose();
@@ -106,7 +122,9 @@ void SolidSampler::sampleBody(const RigidBody& body, int index, SolidFractions& 
   const Eigen::Matrix3d R_WB = X_WB.linear();
   const Eigen::AlignedBox3d box = body.distance->bounds().transformed(X_WB);
 
-  BodyFractions& f = out.bodies[index];
+  out.shape = body.distance.get();
+  out.pose = X_WB;
+  BodyFractions& f = out.fractions;
   for (int a = 0; a < 3; ++a) {
     const double low = (box.min()[a] - grid_.origin[a]) / h;
     const double high = (box.max()[a] - grid_.origin[a]) / h;
@@ -128,11 +146,12 @@ void SolidSampler::sampleBody(const RigidBody& body, int index, SolidFractions& 
   const std::size_t size = static_cast<std::size_t>(f.count[0]) * f.count[1] * f.count[2];
   for (auto& field : f.face) field.assign(size, 0.0);
   f.cell.assign(size, 0.0);
+  for (auto& field : out.distance) field.assign(size, static_cast<float>(kFar));
+  out.cell_distance.resize(size);
   if (size == 0) return;
 
-  FaceField<float> distance;
-  for (auto& field : distance) field.assign(size, static_cast<float>(kFar));
-  std::vector<float> cell_distance(size);
+  FaceField<float>& distance = out.distance;
+  std::vector<float>& cell_distance = out.cell_distance;
   std::vector<std::array<float, 6>> halves(size);  // solid part of the low and high half along each axis
 
 #pragma omp parallel for schedule(static, kPlanesInTurn)
@@ -176,15 +195,11 @@ void SolidSampler::sampleBody(const RigidBody& body, int index, SolidFractions& 
     }
   }
 
-  // A box longer than a period holds cells of the grid twice.
-  bool once = true;
-  for (int a = 0; a < 3; ++a) once = once && (!l.periodic[a] || f.count[a] <= l.n[a]);
-#pragma omp parallel for schedule(static, kPlanesInTurn) if (once)
+#pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int k = 0; k < f.count[2]; ++k) {
     for (int j = 0; j < f.count[1]; ++j) {
       for (int i = 0; i < f.count[0]; ++i) {
         const std::size_t c = f.local(i, j, k);
-        const std::array<int, 3> cell = {f.low[0] + i, f.low[1] + j, f.low[2] + k};
         const std::array<int, 3> at = {i, j, k};
         for (int a = 0; a < 3; ++a) {
           double low_part = 0.0;
@@ -194,15 +209,35 @@ void SolidSampler::sampleBody(const RigidBody& body, int index, SolidFractions& 
             low_part = halves[f.local(before[0], before[1], before[2])][2 * a + 1];
           }
           f.face[a][c] = 0.5 * (low_part + halves[c][2 * a]);
+        }
+      }
+    }
+  }
+}
+
+void SolidSampler::addBody(const BodySample& sample, int index, SolidFractions& out) const {
+  const Lattice& l = grid_.lattice;
+  BodyFractions& f = out.bodies[index];
+  f = sample.fractions;
+  // A box longer than a period holds cells of the grid twice.
+  bool once = true;
+  for (int a = 0; a < 3; ++a) once = once && (!l.periodic[a] || f.count[a] <= l.n[a]);
+#pragma omp parallel for schedule(static, kPlanesInTurn) if (once)
+  for (int k = 0; k < f.count[2]; ++k) {
+    for (int j = 0; j < f.count[1]; ++j) {
+      for (int i = 0; i < f.count[0]; ++i) {
+        const std::size_t c = f.local(i, j, k);
+        const std::array<int, 3> cell = {f.low[0] + i, f.low[1] + j, f.low[2] + k};
+        for (int a = 0; a < 3; ++a) {
           const auto g = gridIndex(l, cell, a);
-          if (g >= 0 && distance[a][c] < out.distance[a][g]) {
-            out.distance[a][g] = distance[a][c];
+          if (g >= 0 && sample.distance[a][c] < out.distance[a][g]) {
+            out.distance[a][g] = sample.distance[a][c];
             out.owner[a][g] = static_cast<std::int16_t>(index);
           }
         }
         const auto g = gridIndex(l, cell, -1);
         if (g >= 0) {
-          out.cell_distance[g] = std::min<double>(out.cell_distance[g], cell_distance[c]);
+          out.cell_distance[g] = std::min<double>(out.cell_distance[g], sample.cell_distance[c]);
           out.cell_fluid[g] = std::max(0.0, out.cell_fluid[g] - f.cell[c]);
         }
       }

@@ -60,14 +60,29 @@ struct SolidFractions {
 class SolidSampler {
  public:
   explicit SolidSampler(const MacGrid& grid);
-  void sample(const std::vector<RigidBody>& bodies, SolidFractions& out) const;
+  // A body that has hardly moved since it was sampled is not sampled again.
+  void sample(const std::vector<RigidBody>& bodies, SolidFractions& out);
+  // What was sampled before does not count from now on.
+  void forget() { samples_.clear(); }
 
  private:
-  void sampleBody(const RigidBody& body, int index, SolidFractions& out) const;
+  // One body by itself, as if nothing else were there; fields are box-local.
+  struct BodySample {
+    const SignedDistance* shape = nullptr;
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    BodyFractions fractions;
+    FaceField<float> distance;         // in cell widths, at face centres
+    std::vector<float> cell_distance;  // at cell centres
+  };
+
+  bool serves(const BodySample& sample, const RigidBody& body) const;
+  void sampleBody(const RigidBody& body, BodySample& out) const;
+  void addBody(const BodySample& sample, int index, SolidFractions& out) const;
   void close(SolidFractions& out) const;
 
   MacGrid grid_;
   SolidFractions walls_;  // the tank without bodies
+  std::vector<BodySample> samples_;
 };
 
 }  // namespace monolith

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "coupling/fraction_coefficients.h"
+#include "solve/velocity_multigrid.h"
 
 namespace monolith {
 namespace {
@@ -15,6 +16,9 @@ constexpr double kFluxTolerance = 1e-7;
 
 // `fractions`: less of a face than this does not tell the velocity of the liquid there (fraction_coefficients.h).
 constexpr double kLeastResolved = 0.25;
+
+// Where viscosity varies any level may be wanted.
+double leastCoarsened(bool varies) { return varies ? 0.0 : kLeastCoarsenedNumber; }
 
 }  // namespace
 
@@ -82,7 +86,7 @@ void StepProblem::assembleFitted(SolidFractions& solids, const std::vector<doubl
   const StokesGeometry geometry{&solids.fluid, &solids.distance, &liquid_distance, &solids.cell_distance};
   buildCoefficients(grid.lattice, geometry, viscous_number, coefficients, rates ? &strain : nullptr);
   buildBodyRows(grid, solids, *bodies, geometry, coefficients, rows);
-  buildCoarseLevels(grid.lattice, geometry, viscous_number, coarse);
+  buildCoarseLevels(grid.lattice, geometry, viscous_number, leastCoarsened(rates), coarse);
 }
 
 void StepProblem::assembleFractions(const SolidFractions& solids, const std::vector<double>& liquid_distance,
@@ -90,7 +94,7 @@ void StepProblem::assembleFractions(const SolidFractions& solids, const std::vec
   const FractionGeometry geometry = sampleFractions(grid, *bodies, solids, liquid_distance, viscous_number > 0.0);
   buildFractionCoefficients(grid.lattice, geometry, viscous_number, coefficients, rates ? &strain : nullptr);
   buildFractionRows(grid, solids, *bodies, coefficients, rows);
-  buildCoarseFractionLevels(grid.lattice, geometry, liquid_distance, viscous_number, coarse);
+  buildCoarseFractionLevels(grid.lattice, geometry, liquid_distance, viscous_number, leastCoarsened(rates), coarse);
   flux_share = geometry.fluid;
   const Lattice& l = grid.lattice;
   std::vector<std::uint8_t> has_pressure = coefficients.has_pressure;

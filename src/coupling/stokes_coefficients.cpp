@@ -160,7 +160,7 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
         out.open[a][f] = moves ? fluid[f] : 0.0;
       }
     }
-  });
+  }, kHeavySizeWorthSharing);
   for (int a = 0; a < 3; ++a) {
     fillHalo(l, out.mass[a]);
     fillHalo(l, out.open[a]);
@@ -173,7 +173,7 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
       for (int a = 0; a < 3; ++a) sum += out.open[a][c] + out.open[a][c + l.stride[a]];
       out.has_pressure[c] = isWet(liquid[c]) & (sum > 0.0);
     }
-  });
+  }, kHeavySizeWorthSharing);
   if (!out.viscous) return;
 
   if (strain != nullptr) strain->resize(l);
@@ -186,7 +186,7 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
       if (mark[i] == SampleBuilder::kAllAir || (mark[i] == SampleBuilder::kPlain && strain == nullptr)) continue;
       buildSamples(samples, viscous_number, row + i, out, strain);
     }
-  });
+  }, kHeavySizeWorthSharing);
   for (int a = 0; a < 3; ++a) {
     fillHalo(l, out.normal[a]);
     fillHalo(l, out.drag[a]);
@@ -196,13 +196,13 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
 }
 
 void buildCoarseLevels(const Lattice& lattice, const StokesGeometry& geometry, double viscous_number,
-                       std::vector<StaggeredCoefficients<float>>& levels) {
+                       double least_number, std::vector<StaggeredCoefficients<float>>& levels) {
   Lattice l = lattice;
   FaceField<double> fluid, distance;
   std::vector<double> liquid, to;
   StaggeredCoefficients<double> coefficients;
   std::size_t count = 1;
-  while (canCoarsen(l)) {
+  while (canCoarsen(l) && viscous_number > least_number) {
     const Lattice coarse = coarsened(l);
     const bool first = count == 1;
     for (int a = 0; a < 3; ++a) {

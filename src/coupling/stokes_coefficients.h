@@ -58,8 +58,9 @@ void buildCoefficients(const Lattice& lattice, const StokesGeometry& geometry, d
 void buildBodyRows(const MacGrid& grid, const SolidFractions& solids, const std::vector<RigidBody>& bodies,
                    const StokesGeometry& geometry, const StaggeredCoefficients<double>& coefficients, BodyRows& out);
 
-// The coarser levels, in the multigrid's precision: the same construction on averaged geometry.
+// The coarser levels, in the multigrid's precision: the same construction on averaged geometry; none below a level whose
+// viscous number is least_number or less.
 void buildCoarseLevels(const Lattice& lattice, const StokesGeometry& geometry, double viscous_number,
-                       std::vector<StaggeredCoefficients<float>>& levels);
+                       double least_number, std::vector<StaggeredCoefficients<float>>& levels);
 
 }  // namespace monolith

@@ -43,6 +43,7 @@ void Simulation::Impl::initialise() {
   state.coupled.contact.assign(state.bodies.size(), Wrench());
   state.mean_liquid = state.coupled.liquid;
   state.mean_contact = state.coupled.contact;
+  sampler.forget();
   prepareGeometry();
   target_volume = state.surface[0].volume(solids.cell_fluid);
   state.typical_viscosity = viscosity_law.viscosity(0.0);

@@ -43,18 +43,19 @@ struct Lattice {
   long cells() const { return static_cast<long>(n[0]) * n[1] * n[2]; }
 };
 
-// Smaller lattices are not worth waking a second thread for.
+// Smaller lattices are not worth waking a second thread for; nor are these if there is much to do for each cell.
 constexpr std::size_t kSizeWorthSharing = 20000;
+constexpr std::size_t kHeavySizeWorthSharing = 2000;
 // Threads take planes in turn, so many at a time: liquid may fill only the lowest.
 constexpr int kPlanesInTurn = 4;
 
 // Calls f(row_start, j, k) for every x-row of faces (the range that covers all cells, faces and edges); f sees
 // rows of faceEnd(0) entries. Rows are shared among threads by k, so f may write its own row only.
 template <class RowFunction>
-void forEachRow(const Lattice& lattice, RowFunction&& f) {
+void forEachRow(const Lattice& lattice, RowFunction&& f, std::size_t worth_sharing = kSizeWorthSharing) {
   const int end_j = lattice.faceEnd(1);
   const int end_k = lattice.faceEnd(2);
-#pragma omp parallel for schedule(static, kPlanesInTurn) if (lattice.size >= kSizeWorthSharing)
+#pragma omp parallel for schedule(static, kPlanesInTurn) if (lattice.size >= worth_sharing)
   for (int k = 0; k < end_k; ++k) {
     for (int j = 0; j < end_j; ++j) {
       f(lattice.index(0, j, k), j, k);

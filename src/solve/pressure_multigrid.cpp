@@ -131,6 +131,8 @@ void PressureMultigrid::finish(const Network& network, Level& level) const {
   for (auto* field : {&level.x, &level.next, &level.d, &level.mask}) assignZero(l.size, *field);
   if (&level != &levels_[0]) assignZero(l.size, level.b);
   level.blocks.build(l, {0}, [&](int, std::ptrdiff_t row, int width, auto& k) {
+    const std::uint8_t* kind = network.kind.data() + row;
+    if (std::find(kind, kind + width, kLiquid) == kind + width) return false;
     for (int i = 0; i < width; ++i) {
       const auto c = row + i;
       const bool liquid = network.kind[c] == kLiquid;
@@ -141,6 +143,7 @@ void PressureMultigrid::finish(const Network& network, Level& level) const {
       }
       level.mask[c] = k[kInverse][i] = sum > 0.0f ? 1.0f / sum : 0.0f;
     }
+    return true;
   });
   // L is an M-matrix: the spectrum of D^-1 L lies in [0, 2].
   level.range.largest = 2.0f;

@@ -33,39 +33,40 @@ void newton(const Eigen::MatrixXd& D, const Eigen::VectorXd& w0, const Eigen::Ve
   for (int it = 0; it < kNewtonSteps && best > goal; ++it) {
     ++report.iterations;
     const Eigen::VectorXd w = D * x + w0;
-    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(3 * m, 3 * m);
-    Eigen::VectorXd residual(3 * m);
+    // Contacts that do not press have no impulse; the others' rows are solved for.
+    std::vector<Eigen::Index> pressing;
     for (Eigen::Index c = 0; c < m; ++c) {
-      const Eigen::Index t = m + 2 * c;
-      if (!(x[c] - normalStep(D, c) * w[c] > 0.0)) {
-        for (const Eigen::Index e : {c, t, t + 1}) {
-          A(e, e) = D(e, e);
-          residual[e] = D(e, e) * x[e];
-        }
-        continue;
-      }
-      A.row(c) = D.row(c);
-      residual[c] = w[c];
+      if (x[c] - normalStep(D, c) * w[c] > 0.0) pressing.push_back(c);
+    }
+    const auto k = static_cast<Eigen::Index>(pressing.size());
+    std::vector<Eigen::Index> entry(3 * k);
+    for (Eigen::Index i = 0; i < k; ++i) {
+      entry[i] = pressing[i];
+      for (int d = 0; d < 2; ++d) entry[k + 2 * i + d] = m + 2 * pressing[i] + d;
+    }
+    Eigen::VectorXd change = -x, moved = w;
+    for (const Eigen::Index e : entry) change[e] = 0.0;
+    moved += D * change;
+    Eigen::MatrixXd A = D(entry, entry);
+    Eigen::VectorXd residual = moved(entry);
+    for (Eigen::Index i = 0; i < k; ++i) {
+      const Eigen::Index c = pressing[i], t = k + 2 * i;
       const double step = tangentStep(D, m, c);
-      const Eigen::Vector2d f = x.segment<2>(t), trial = f - step * w.segment<2>(t);
+      const Eigen::Vector2d f = x.segment<2>(m + 2 * c), trial = f - step * w.segment<2>(m + 2 * c);
       const double length = trial.norm(), radius = mu[c] * std::max(x[c], 0.0);
-      if (length <= radius) {
-        A.middleRows<2>(t) = D.middleRows<2>(t);
-        residual.segment<2>(t) = w.segment<2>(t);
-        continue;
-      }
+      if (length <= radius) continue;
       const Eigen::Vector2d along = trial / length;
       const Eigen::Matrix2d turn = radius / length * (Eigen::Matrix2d::Identity() - along * along.transpose());
-      A.middleRows<2>(t) = (step * turn) * D.middleRows<2>(t);
-      A.block<2, 2>(t, t) += Eigen::Matrix2d::Identity() - turn;
-      A.block<2, 1>(t, c) -= mu[c] * along;
-      residual.segment<2>(t) = f - radius * along;
-      A.middleRows<2>(t) /= step;
-      residual.segment<2>(t) /= step;
+      const Eigen::Vector2d trial_then = f - step * moved.segment<2>(m + 2 * c);
+      A.middleRows<2>(t) = (turn * A.middleRows<2>(t)).eval();
+      A.block<2, 2>(t, t) += (Eigen::Matrix2d::Identity() - turn) / step;
+      A.block<2, 1>(t, i) -= mu[c] / step * along;
+      residual.segment<2>(t) = (f - radius * along - turn * (trial_then - trial)) / step;
     }
     const Eigen::VectorXd d = A.partialPivLu().solve(residual);
     if (!d.allFinite()) return;
-    x -= d;
+    x += change;
+    for (Eigen::Index i = 0; i < 3 * k; ++i) x[entry[i]] -= d[i];
     // Inside the cones, as the law's residual wants them.
     Eigen::VectorXd inside = x;
     for (Eigen::Index c = 0; c < m; ++c) {

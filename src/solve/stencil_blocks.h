@@ -29,8 +29,8 @@ class StencilBlocks {
   static constexpr int kCount = Count;
   using Row = std::array<std::vector<Real>, Count>;
 
-  // fill(component, row, width, out) writes the coefficients of `width` lanes from index `row` on; all zero: no
-  // unknown. `first[component]`: index along x of the first lane of a row.
+  // fill(component, row, width, out) writes the coefficients of `width` lanes from index `row` on, all zero: no unknown;
+  // or returns false, then there is none in the row. `first[component]`: index along x of the first lane of a row.
   template <class FillRow>
   void build(const Lattice& l, const std::vector<int>& first, FillRow&& fill);
 
@@ -115,7 +115,7 @@ void StencilBlocks<Real, Count>::build(const Lattice& l, const std::vector<int>&
       std::int32_t last = -1;
       for (int j = 0; j < l.faceEnd(1); ++j) {
         const auto start = l.index(first[component], j, k);
-        fill(component, start, row_blocks * kLanes, row);
+        if (!fill(component, start, row_blocks * kLanes, row)) continue;
         // Lanes beyond the row; along a periodic axis they hold images.
         for (int lane = l.faceEnd(0) - first[component]; lane < row_blocks * kLanes; ++lane) {
           for (auto& r : row) r[lane] = Real(0);

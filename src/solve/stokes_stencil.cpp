@@ -42,6 +42,11 @@ inline void momentum(const Lattice& l, int a, std::ptrdiff_t f, const Real* k, c
   }
 }
 
+template <class Value>
+bool isZero(const Value* values, int size) {
+  return std::all_of(values, values + size, [](Value value) { return value == Value(0); });
+}
+
 // Coefficients of a row of faces.
 template <class Real, class From>
 void fillFaceRow(const StaggeredCoefficients<From>& c, int a, std::ptrdiff_t row, int width,
@@ -134,11 +139,13 @@ void buildFaceBlocks(const StaggeredCoefficients<From>& c, FaceBlocks<Real>& out
   // Along the rows of their own axis faces on the low wall have no unknown.
   const std::vector<int> first = {l.periodic[0] ? 0 : 1, 0, 0};
   out.build(l, first, [&](int a, std::ptrdiff_t row, int width, typename FaceBlocks<Real>::Row& k) {
+    if (isZero(c.mass[a].data() + row, width)) return false;
     fillFaceRow<Real>(c, a, row, width, k);
     if (transfer != nullptr) std::copy_n(k[S::kTransfer].data(), width, (*transfer)[a].data() + row);
-    if (conductance == nullptr) return;
+    if (conductance == nullptr) return true;
     float* g = (*conductance)[a].data() + row;
     for (int i = 0; i < width; ++i) g[i] = static_cast<float>(k[S::kOpen][i] * k[S::kImpulse][i]);
+    return true;
   });
   for (auto* fields : {transfer, conductance}) {
     if (fields == nullptr) continue;
@@ -151,6 +158,7 @@ void buildCellBlocks(const StaggeredCoefficients<From>& c, CellBlocks<Real>& out
   const Lattice& l = c.lattice;
   out.build(l, {0}, [&](int, std::ptrdiff_t row, int width, typename CellBlocks<Real>::Row& k) {
     const std::uint8_t* has = c.has_pressure.data() + row;
+    if (isZero(has, width)) return false;
     for (int a = 0; a < 3; ++a) {
       const From* open = c.open[a].data() + row;
       for (int i = 0; i < width; ++i) {
@@ -158,6 +166,7 @@ void buildCellBlocks(const StaggeredCoefficients<From>& c, CellBlocks<Real>& out
         k[CellStencil::kHigh + a][i] = has[i] ? Real(open[i + l.stride[a]]) : Real(0);
       }
     }
+    return true;
   });
 }
 

@@ -11,6 +11,10 @@
 
 namespace monolith {
 
+// Viscous number of a level up to which its mass term dominates and one smoothing sweep is a solve: it needs no coarser
+// one.
+constexpr double kLeastCoarsenedNumber = 0.05;
+
 class VelocityMultigrid {
  public:
   // The finest level with its transfer weights, and the levels below it: coarse[1] to coarse[count - 1], each
