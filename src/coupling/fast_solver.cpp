@@ -4,51 +4,24 @@
 #include <cmath>
 #include <sstream>
 
-#include "coupling/contact_states.h"
+#include "coupling/contact_guess.h"
 #include "coupling/packed_system.h"
-#include "solve/staggered_projections.h"
 
 namespace monolith {
 namespace {
 
-// Coulomb's law on the small system is solved this much more closely than the whole, as far as digits allow.
-constexpr double kSmallFactor = 0.01;
-constexpr double kSmallTolerance = 1e-9;
-// Contacts have settled when what they do to the bodies' velocities changes by less than the solve's tolerance times
-// this, relative to the speeds at the contacts.
-constexpr double kLawFactor = 10.0;
-// The response is learnt from changes of speed larger than this times the tolerance.
-constexpr double kLearnable = 1000.0;
-constexpr double kSmallFloor = 3.0;
-// Many redundant contacts near the limit of their friction (an arch about to fall) may leave the law short of its
-// tolerance: so much of the contacts' speeds is accepted, and reported.
-constexpr double kAcceptableLaw = 1e-3;
-constexpr double kLeastSpeed = 1e-10;  // m/s
 // A round that is not expected to be the last need only reduce its residual to this part: what the contacts do next
 // would undo the rest.
 constexpr double kRoughPart = 0.03;
-// Nor need Coulomb's law be solved for more closely after it, or before the first.
-constexpr double kRoughSmallTolerance = 1e-4;
 // Rounds after which the response of the bodies in contact is no longer estimated but solved for, and how closely.
 constexpr int kRoundsOnEstimate = 10;
 constexpr double kResponseTolerance = 1e-6;
 constexpr double kTightening = 0.3;  // of the tolerance in each of those rounds
 constexpr double kRoundOff = 1e-13;
-constexpr double kLeastCurvature = 1e-8;
 // Impulses of contacts that press are solved for next to those of the small system: moving away from them costs this
 // part of the contact's response. Without it what redundant contacts do one by one is as sensitive as
 // kContactCompliance is small.
 constexpr double kProximity = 1e-4 / kContactCompliance;  // times its compliance
-
-// Symmetric rank-one update of the response K so that it gives the change of twists dv that impulses dg were seen to
-// make; left alone where that would cost its definiteness.
-void learnResponse(const Eigen::VectorXd& dg, const Eigen::VectorXd& dv, Eigen::MatrixXd& K) {
-  const Eigen::VectorXd miss = dv - K * dg;
-  const double curvature = miss.dot(dg);
-  if (!(std::abs(curvature) > kLeastCurvature * miss.norm() * dg.norm())) return;
-  const Eigen::MatrixXd next = K + miss * miss.transpose() / curvature;
-  if (curvature > 0.0 || Eigen::LLT<Eigen::MatrixXd>(next).info() == Eigen::Success) K = next;
-}
 
 }  // namespace
 
@@ -56,16 +29,14 @@ struct FastSolver::Impl {
   StepProblem* problem = nullptr;
   PackedSystem system;
   std::vector<double> rhs, x, guess;  // kept for their memory
-  Eigen::VectorXd compliance;  // of each contact row
-  double first_change = 0.0;   // of the contacts after the last step's first round, relative; 0 if that was enough
-
-  void setBorder(const ContactBorder& border) { system.setBorder(border, compliance, kProximity); }
+  double first_change = 0.0;          // of the contacts after the last step's first round, relative; 0 if that was enough
 
   // Response of the twists of the bodies in contact to unit impulses, by one liquid solve each; false if one fails.
   bool solveResponse(const ContactRows& contacts, const CoupledOptions& options, CoupledReport& report,
                      Eigen::MatrixXd& K) {
-    setBorder(makeBorder(contacts, openStates(contacts)));
+    system.setBorder(makeBorder(contacts, openStates(contacts)), Eigen::VectorXd(), kProximity);
     const Eigen::Index n = system.bodySize();
+    K = system.estimatedResponse();
     for (Eigen::Index i = 0; i < n; ++i) {
       if (contacts.J.col(i).isZero(0.0)) continue;
       std::vector<double> push(system.size(), 0.0), answer(push);
@@ -76,6 +47,21 @@ struct FastSolver::Impl {
     }
     K = 0.5 * (K + K.transpose()).eval();
     return true;
+  }
+
+  // Rows of the border behind the right side and the guess, which start from the impulses r.
+  void appendBorder(const ContactRows& contacts, const ContactStates& states, const Eigen::VectorXd& compliance,
+                    const Eigen::VectorXd& r, ContactBorder& border) {
+    border = makeBorder(contacts, states);
+    system.setBorder(border, compliance, kProximity);
+    const Eigen::VectorXd start = borderUnknowns(contacts, states, border, r);
+    const std::size_t tail = system.size();
+    rhs.resize(tail + border.count());
+    x.resize(tail + border.count());
+    for (Eigen::Index i = 0; i < border.count(); ++i) {
+      rhs[tail + i] = border.bias[i] - kProximity * compliance[border.entry[i]] * start[i];
+      x[tail + i] = start[i];
+    }
   }
 
   CoupledReport notConverged(CoupledReport report, const std::string& message) {
@@ -109,117 +95,65 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
   CoupledReport report;
   PackedSystem& system = m.system;
   system.updateSchur();
-  const std::size_t tail = system.size();
-  std::vector<double>&rhs = m.rhs, &x = m.x;
-  system.packForces(rhs_fields, rhs);
-  system.packMotion(x_fields, x);
+  system.packForces(rhs_fields, m.rhs);
+  system.packMotion(x_fields, m.x);
   const double rhs_norm = stepNorm(p, rhs_fields);
   const Eigen::Index count = contacts.count();
-  const double small_tolerance = std::max(kSmallFactor * options.tolerance, kSmallTolerance);
 
-  // Response of bodies and contacts on the approximate Schur complement.
-  Eigen::MatrixXd K, D;
-  Eigen::VectorXd last_push, last_twists;
-  ContactStates states;
-  const ContactStates open = openStates(contacts);
-  const auto velocities = [&](const Eigen::VectorXd& twists) {
-    return Eigen::VectorXd(contacts.J * twists + contacts.bias);
-  };
+  ContactGuess guess(contacts, r, options.tolerance);
   if (count > 0) {
-    K = system.estimatedResponse();
-    D = contactResponse(contacts, K, m.compliance);
+    m.guess = m.x;
+    guess.setResponse(system.estimatedResponse());
     // One cycle on the whole residual says roughly how the bodies would move without contact.
-    m.setBorder(makeBorder(contacts, open));
-    if (r.size() != 3 * count) r = Eigen::VectorXd::Zero(3 * count);
-    const Eigen::VectorXd w0 = velocities(system.improvedTwists(rhs, x));
-    const FrictionReport friction = solveFrictionalContact(D, w0, contacts.friction, std::max(small_tolerance, kRoughSmallTolerance), r);
-    report.friction_iterations += friction.iterations;
-    states = contactStates(contacts, D, D * r + w0, r);
+    system.setBorder(makeBorder(contacts, openStates(contacts)), guess.compliance(), kProximity);
+    guess.startFrom(system.improvedTwists(m.rhs, m.x), report);
   }
 
   bool lawful = false;
   bool from_open = count == 0;
-  double expected = m.first_change;  // change of the contacts that this round will ask for
-  if (count > 0) m.guess = x;
+  double expected = m.first_change;  // change of the contacts that this round will ask for, relative
   KrylovReport last;
   for (int round = 0; round < options.maximum_rounds && !lawful; ++round) {
-    if (round == kRoundsOnEstimate) {
-      if (!m.solveResponse(contacts, options, report, K)) break;
-      D = contactResponse(contacts, K, m.compliance);
-    }
     // On the exact response the impulses are right but for the shift and are given; what redundant contacts do one by
     // one is too sensitive to be solved for over and over.
     const bool given = round >= kRoundsOnEstimate;
-    const ContactBorder border = makeBorder(contacts, given ? open : states);
-    m.setBorder(border);
-    const Eigen::VectorXd start = borderUnknowns(contacts, states, border, r);
-    rhs.resize(tail + border.count());
-    if (given) {
-      system.setForces(gatherBodies(p, rhs_fields.bodies) + contacts.J.transpose() * r, rhs);
+    if (round == kRoundsOnEstimate) {
+      Eigen::MatrixXd K;
+      if (!m.solveResponse(contacts, options, report, K)) break;
+      guess.setResponse(K);
     }
-    x.resize(tail + border.count());
-    for (Eigen::Index i = 0; i < border.count(); ++i) {
-      rhs[tail + i] = border.bias[i] - kProximity * m.compliance[border.entry[i]] * start[i];
-      x[tail + i] = start[i];
-    }
+    const ContactStates states = given ? openStates(contacts) : guess.states();
+    ContactBorder border;
+    m.appendBorder(contacts, states, guess.compliance(), r, border);
+    if (given) system.setForces(gatherBodies(p, rhs_fields.bodies) + guess.push(), m.rhs);
     // Given impulses are judged by the velocities that come of them, which the solve's error must not drown.
     const double closer = given ? std::pow(kTightening, round - kRoundsOnEstimate + 1) : 1.0;
-    const bool rough = count > 0 && !given && expected > kLawFactor * options.tolerance;
-    last = system.solve(rhs, x, std::max(closer * options.tolerance, kRoundOff) * rhs_norm, rough ? kRoughPart : 0.0,
-                        options, report);
+    const bool rough = count > 0 && !given && expected > ContactGuess::settledAt(options.tolerance);
+    last = system.solve(m.rhs, m.x, std::max(closer * options.tolerance, kRoundOff) * rhs_norm,
+                        rough ? kRoughPart : 0.0, options, report);
     if (!last.converged) {
       // The first guess of what the contacts do may be far off, and then hard to solve for: begin with none that press.
       if (from_open || border.count() == 0) break;
       from_open = true;
-      x = m.guess;
-      r.setZero();
-      states = open;
+      m.x = m.guess;
+      guess.setOpen();
       continue;
     }
     if (count == 0) {
       lawful = true;
       break;
     }
-    const Eigen::VectorXd y = Eigen::Map<const Eigen::VectorXd>(x.data() + tail, border.count());
-    if (!given) r = impulses(contacts, states, border, y);
-    const Eigen::VectorXd push = contacts.J.transpose() * r;
-    const Eigen::VectorXd twists = system.twists(x);
-    const Eigen::VectorXd w = velocities(twists);
-    // Below a certain change the solve's own error is all that there is to see.
-    const double error = std::max(options.tolerance, last.residual / rhs_norm);
-    const double seen = last_push.size() > 0 ? (contacts.J * (twists - last_twists)).cwiseAbs().maxCoeff() : 0.0;
-    const double speed = (w - contacts.bias).cwiseAbs().maxCoeff();
-    if (!given && seen > kLearnable * error * speed) {
-      learnResponse(push - last_push, twists - last_twists, K);
-      const Eigen::VectorXd compliance = m.compliance;
-      D = contactResponse(contacts, K, m.compliance);
-      // The border was solved with the compliance it had.
-      D.diagonal() += compliance - m.compliance;
-      m.compliance = compliance;
+    const Eigen::VectorXd twists = system.twists(m.x);
+    if (!given) {
+      const auto y = Eigen::Map<const Eigen::VectorXd>(m.x.data() + system.size(), border.count());
+      guess.setImpulses(impulses(contacts, states, border, y));
+      guess.learnFrom(twists, std::max(options.tolerance, last.residual / rhs_norm));
     }
-    last_push = push;
-    last_twists = twists;
-    // The small system, shifted so that it reproduces this solution exactly, says what the contacts do next. If that
-    // moves no body, its impulses obey Coulomb's law here.
-    Eigen::VectorXd next = r;
-    const Eigen::VectorXd w0 = w - D * r + m.compliance.cwiseProduct(r);
-    const double closely = rough ? std::max(small_tolerance, kRoughSmallTolerance) : small_tolerance;
-    const FrictionReport friction = solveFrictionalContact(D, w0, contacts.friction, closely, next);
-    report.friction_iterations += friction.iterations;
-    const double change = (D * (next - r)).cwiseAbs().maxCoeff();
-    const double scale = std::max((D * next).cwiseAbs().maxCoeff(), speed);
-    // No closer than the small system is solved.
-    const double small_residual = std::max(closely, friction.residual);
-    const double least = kSmallFloor * small_residual * w0.cwiseAbs().maxCoeff() + kLeastSpeed;
-    const bool settled = (friction.solved || friction.residual <= kAcceptableLaw) &&
-                         change <= std::max(kLawFactor * options.tolerance * scale, least);
-    lawful = settled && !rough;
-    const double relative = scale > 0.0 ? change / scale : 0.0;
-    expected = settled ? 0.0 : relative * relative;
-    if (round == 0) m.first_change = settled ? 0.0 : relative;
-    report.contact_residual = friction.residual;
-    r = next;
-    states = contactStates(contacts, D, D * next + w0, next);
+    const ContactGuess::Change change = guess.proceedFrom(twists, rough, report);
+    lawful = change.settled && !rough;
+    // The border is Newton's method.
+    expected = change.settled ? 0.0 : change.relative * change.relative;
+    if (round == 0) m.first_change = change.settled ? 0.0 : change.relative;
   }
 
   report.residual = rhs_norm > 0.0 ? last.residual / rhs_norm : 0.0;
@@ -235,7 +169,7 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
   }
   system.judgeAge();
   const std::vector<Vector6d> others = x_fields.bodies;
-  system.unpackMotion(x, x_fields);
+  system.unpackMotion(m.x, x_fields);
   for (std::size_t b = 0; b < others.size(); ++b) {
     if (p.free_index[b] < 0) x_fields.bodies[b] = others[b];
   }

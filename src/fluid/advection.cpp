@@ -272,14 +272,14 @@ void advectAccelerated(const MacGrid& grid, const FaceField<double>& velocity, c
 }
 
 void advectCells(const MacGrid& grid, const FaceField<double>& velocity, const std::vector<double>& field, double dt,
-                 std::vector<double>& moved) {
+                 double band, std::vector<double>& moved) {
   const Lattice& l = grid.lattice;
   const double scale = dt / grid.h;
   moved = field;
   forEachRowInTurn(l.n[1], l.n[2], [&](int j, int k) {
     const auto row = l.index(0, j, k);
     advectRow<1>(
-        l, j, k, l.n[0], [](int) { return true; },
+        l, j, k, l.n[0], [&](int i) { return std::abs(field[row + i]) < band; },
         [&](int i) {
           return std::array<double, 1>{advectCell(l, velocity, field, {i, j, k}, scale)};
         },

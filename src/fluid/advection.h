@@ -34,9 +34,10 @@ void advectAccelerated(const MacGrid& grid, const FaceField<double>& velocity, c
                        const std::array<std::vector<std::uint8_t>, 3>& known, double dt, FaceField<double>& moved,
                        FaceField<double>& gained);
 
-// A cell-centred field moved by the velocity over dt. Halos must be filled.
+// A cell-centred field moved by the velocity over dt, where its size is less than `band`; elsewhere it stays. Halos must
+// be filled.
 void advectCells(const MacGrid& grid, const FaceField<double>& velocity, const std::vector<double>& field, double dt,
-                 std::vector<double>& moved);
+                 double band, std::vector<double>& moved);
 
 // Velocity at a point, position in cell widths from the tank's corner.
 Eigen::Vector3d velocityAt(const Lattice& lattice, const FaceField<double>& velocity, const Eigen::Vector3d& position);

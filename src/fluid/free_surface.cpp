@@ -17,6 +17,7 @@ constexpr double kLargestShift = 0.1;      // cells in one correction
 // Half-width, in cells, of the band around the surface in which the level set is a distance; beyond it is just as large
 // as that, which is further than anyone looks.
 constexpr double kBand = 6.0;
+constexpr int kBandPlanes = 6;  // its reach along an axis
 constexpr double kSampleBeyondSolid = 0.75;  // cells: outside, where the value is the liquid's own
 
 // Solution of the discrete eikonal equation at a cell from its nearest neighbours along each axis.
@@ -100,7 +101,7 @@ FreeSurface::FreeSurface(const MacGrid& grid, double fill_height, const std::vec
 
 void FreeSurface::advect(const FaceField<double>& velocity, double dt, double maximum_speed) {
   if (full_ || empty_ || maximum_speed == 0.0) return;
-  advectCells(grid_, velocity, distance_, dt, scratch_);
+  advectCells(grid_, velocity, distance_, dt, kBand, scratch_);
   distance_.swap(scratch_);
   extendIntoHalo(grid_.lattice, distance_);
   travelled_ += maximum_speed * dt / grid_.h;
@@ -113,6 +114,7 @@ void FreeSurface::redistance() {
   std::vector<double>& next = scratch_;
   next.assign(l.size, kFar);
   std::vector<std::uint8_t> fixed(l.size, 0);
+  std::vector<char> crossed(l.n[2], 0);
   // Next to the surface: the distance to the plane that the level set is there.
 #pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int k = 0; k < l.n[2]; ++k) {
@@ -139,6 +141,7 @@ void FreeSurface::redistance() {
         if (!near) continue;
         next[c] = std::abs(d) / std::max(std::sqrt(slope2), 0.1);
         fixed[c] = 1;
+        crossed[k] = 1;
       }
     }
   }
@@ -150,6 +153,10 @@ void FreeSurface::redistance() {
     fillHalo(l, next);
 #pragma omp parallel for schedule(static, kPlanesInTurn)
     for (int k = 0; k < l.n[2]; ++k) {
+      // Planes that the band does not reach.
+      const auto near = crossed.begin() + std::max(0, k - kBandPlanes);
+      const auto far = crossed.begin() + std::min(l.n[2], k + kBandPlanes + 1);
+      if (!l.periodic[2] && std::find(near, far, 1) == far) continue;
       for (int j = 0; j < l.n[1]; ++j) {
         for (int i = (j + k + pass) & 1; i < l.n[0]; i += 2) {
           const auto c = l.index(i, j, k);

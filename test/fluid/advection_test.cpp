@@ -9,6 +9,8 @@
 namespace monolith {
 namespace {
 
+constexpr double kEverywhere = 1e9;
+
 TEST(Interpolation, CubicReproducesCubicsAndNodes) {
   const Lattice l({8, 8, 8}, {false, false, false});
   std::vector<double> field(l.size);
@@ -123,7 +125,7 @@ TEST(Advection, RowsMoveAsTheirFacesDo) {
       }
     }
     std::vector<double> cells;
-    advectCells(grid, u, u[1], 1.0, cells);
+    advectCells(grid, u, u[1], 1.0, kEverywhere, cells);
     for (int k = 0; k < l.n[2]; ++k) {
       for (int j = 0; j < l.n[1]; ++j) {
         for (int i = 0; i < l.n[0]; ++i) {
@@ -142,7 +144,7 @@ TEST(Advection, AtRestNothingChangesABit) {
   for (auto& field : zero) field.assign(l.size, 0.0);
   std::vector<double> field(l.size), moved;
   for (std::size_t c = 0; c < l.size; ++c) field[c] = std::sin(0.1 * static_cast<double>(c));
-  advectCells(grid, zero, field, 0.1, moved);
+  advectCells(grid, zero, field, 0.1, kEverywhere, moved);
   EXPECT_EQ(field, moved);
 }
 
