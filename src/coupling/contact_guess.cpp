@@ -68,8 +68,8 @@ void ContactGuess::learnFrom(const Eigen::VectorXd& twists, double error) {
   last_twists_ = twists;
 }
 
-// Symmetric rank-one update of K so that it gives the change of twists dv that impulses dg were seen to make; left alone
-// where that would cost its definiteness.
+// Symmetric rank-one update of K so that it gives the change of twists dv that impulses dg were seen to make; left
+// alone where that would cost its definiteness.
 void ContactGuess::update(const Eigen::VectorXd& dg, const Eigen::VectorXd& dv) {
   const Eigen::VectorXd miss = dv - K_ * dg;
   const double curvature = miss.dot(dg);

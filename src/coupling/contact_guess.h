@@ -1,7 +1,7 @@
 #pragma once
-// What the contacts of a step do, as far as is known while `fast` solves it: impulses r and states by Coulomb's law on a
-// small system, w = D r + w0 at the contacts with D = J K J^T, whose response K of the bodies to impulses is an estimate
-// that learns from the solutions. Each solution with the liquid shifts w0, and so corrects it.
+// What the contacts of a step do, as far as is known while `fast` solves it: impulses r and states by Coulomb's law on
+// a small system, w = D r + w0 at the contacts with D = J K J^T, whose response K of the bodies to impulses is an
+// estimate that learns from the solutions. Each solution with the liquid shifts w0, and so corrects it.
 
 #include <Eigen/Dense>
 

@@ -16,8 +16,8 @@ Eigen::Vector2d across(const Eigen::Vector2d& direction) { return {-direction[1]
 }  // namespace
 
 ContactStates openStates(const ContactRows& contacts) {
-  return {std::vector<ContactState>(contacts.count(), ContactState::kOpen),
-          Eigen::VectorXd::Zero(2 * contacts.count()), Eigen::VectorXd::Zero(contacts.count())};
+  return {std::vector<ContactState>(contacts.count(), ContactState::kOpen), Eigen::VectorXd::Zero(2 * contacts.count()),
+          Eigen::VectorXd::Zero(contacts.count())};
 }
 
 ContactStates contactStates(const ContactRows& contacts, const Eigen::MatrixXd& D, const Eigen::VectorXd& w,

@@ -29,7 +29,7 @@ struct FastSolver::Impl {
   StepProblem* problem = nullptr;
   PackedSystem system;
   std::vector<double> rhs, x, guess;  // kept for their memory
-  double first_change = 0.0;          // of the contacts after the last step's first round, relative; 0 if that was enough
+  double first_change = 0.0;  // of the contacts after the last step's first round, relative; 0 if that was enough
 
   // Response of the twists of the bodies in contact to unit impulses, by one liquid solve each; false if one fails.
   bool solveResponse(const ContactRows& contacts, const CoupledOptions& options, CoupledReport& report,

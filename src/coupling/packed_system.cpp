@@ -121,7 +121,9 @@ void PackedSystem::setBorder(const ContactBorder& physical, const Eigen::VectorX
   border_C_ = (inverse.asDiagonal() * physical.C).sparseView();
   const Eigen::Index k = physical.count();
   border_compliance_.resize(k);
-  for (Eigen::Index i = 0; i < k; ++i) border_compliance_[i] = compliance[physical.entry[i]] * (1.0 + proximity) + physical.mobility[i];
+  for (Eigen::Index i = 0; i < k; ++i) {
+    border_compliance_[i] = compliance[physical.entry[i]] * (1.0 + proximity) + physical.mobility[i];
+  }
   if (k == 0) return;
   const Eigen::MatrixXd moved = border_R_ * S_inverse_;
   Eigen::MatrixXd response = moved * border_C_;
@@ -172,8 +174,8 @@ void PackedSystem::precondition(const std::vector<float>& from, std::vector<floa
   Eigen::VectorXd force = Eigen::Map<const Eigen::VectorXf>(r, n).cast<double>() - columns_single_.forces(to.data());
   if (k > 0) {
     const Eigen::VectorXd free = S_inverse_ * force;
-    const Eigen::VectorXd y = -border_response_.solve(Eigen::Map<const Eigen::VectorXf>(r + n, k).cast<double>() +
-                                                      border_R_ * free);
+    const Eigen::VectorXd y =
+        -border_response_.solve(Eigen::Map<const Eigen::VectorXf>(r + n, k).cast<double>() + border_R_ * free);
     Eigen::Map<Eigen::VectorXf>(out + n, k) = y.cast<float>();
     force += border_C_ * y;
   }

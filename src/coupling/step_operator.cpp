@@ -77,7 +77,7 @@ void StepOperator::bodyForces(StepVector& x, std::vector<Vector6d>& forces) {
   if (!c.viscous) return;
   for (auto& field : x.velocity) fillHalo(l, field);
   if (solid_.size() != l.size) solid_.assign(l.size, 0.0);
-  // Bodies that share a sample feel each other's motion. liquid(sample), weight(sample): stress is liquid + weight * solid.
+  // Bodies that share a sample feel each other's motion: a stress is liquid(sample) + weight(sample) * solid_[sample].
   const auto add = [&](const std::vector<BodyRow>& rows, auto&& liquid, auto&& weight) {
     for (const BodyRow& row : rows) solid_[row.sample] += row.coefficient.dot(x.bodies[row.body]);
     for (const BodyRow& row : rows) {
@@ -88,13 +88,15 @@ void StepOperator::bodyForces(StepVector& x, std::vector<Vector6d>& forces) {
   for (int a = 0; a < 3; ++a) {
     const auto& u = x.velocity[a];
     const auto& normal = c.normal[a];
-    add(rows_->normal[a], [&](std::ptrdiff_t s) { return normal[s] * (u[s + l.stride[a]] - u[s]); },
+    add(
+        rows_->normal[a], [&](std::ptrdiff_t s) { return normal[s] * (u[s + l.stride[a]] - u[s]); },
         [&](std::ptrdiff_t s) { return normal[s]; });
     const auto [first, second] = kShearPairs[a];
     const auto& v = x.velocity[first];
     const auto& w = x.velocity[second];
     const auto& shear = c.shear[a];
-    add(rows_->shear[a],
+    add(
+        rows_->shear[a],
         [&, sv = l.stride[second], sw = l.stride[first]](std::ptrdiff_t s) {
           return shear[0][s] * (v[s] - v[s - sv]) + shear[1][s] * (w[s] - w[s - sw]);
         },

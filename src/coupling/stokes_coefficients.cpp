@@ -150,7 +150,7 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
   prepareToFill(l, viscous_number > 0.0, out);
   const auto& liquid = *geometry.liquid_distance;
   const int width = l.faceEnd(0);
-  forEachRow(l, [&](std::ptrdiff_t row, int, int) {
+  forEachHeavyRow(l, [&](std::ptrdiff_t row, int, int) {
     for (int a = 0; a < 3; ++a) {
       const double* fluid = (*geometry.fluid)[a].data();
       for (auto f = row; f < row + width; ++f) {
@@ -160,25 +160,25 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
         out.open[a][f] = moves ? fluid[f] : 0.0;
       }
     }
-  }, kHeavySizeWorthSharing);
+  });
   for (int a = 0; a < 3; ++a) {
     fillHalo(l, out.mass[a]);
     fillHalo(l, out.open[a]);
   }
   const int end[3] = {l.n[0], l.n[1], l.n[2]};
-  forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
+  forEachHeavyRow(l, [&](std::ptrdiff_t row, int j, int k) {
     if (j >= end[1] || k >= end[2]) return;
     for (auto c = row; c < row + end[0]; ++c) {
       double sum = 0.0;
       for (int a = 0; a < 3; ++a) sum += out.open[a][c] + out.open[a][c + l.stride[a]];
       out.has_pressure[c] = isWet(liquid[c]) & (sum > 0.0);
     }
-  }, kHeavySizeWorthSharing);
+  });
   if (!out.viscous) return;
 
   if (strain != nullptr) strain->resize(l);
   const SampleBuilder samples(l, geometry, out);
-  forEachRow(l, [&](std::ptrdiff_t row, int, int) {
+  forEachHeavyRow(l, [&](std::ptrdiff_t row, int, int) {
     thread_local std::vector<std::uint8_t> mark;
     samples.markCells(row, width, mark);
     buildPlainRow(samples, viscous_number, row, mark, out);
@@ -186,7 +186,7 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
       if (mark[i] == SampleBuilder::kAllAir || (mark[i] == SampleBuilder::kPlain && strain == nullptr)) continue;
       buildSamples(samples, viscous_number, row + i, out, strain);
     }
-  }, kHeavySizeWorthSharing);
+  });
   for (int a = 0; a < 3; ++a) {
     fillHalo(l, out.normal[a]);
     fillHalo(l, out.drag[a]);

@@ -63,6 +63,12 @@ void forEachRow(const Lattice& lattice, RowFunction&& f, std::size_t worth_shari
   }
 }
 
+// The same where there is much to do for each cell.
+template <class RowFunction>
+void forEachHeavyRow(const Lattice& lattice, RowFunction&& f) {
+  forEachRow(lattice, f, kHeavySizeWorthSharing);
+}
+
 // Copies the periodic images into the halo; nothing along axes with walls.
 template <class Value>
 void fillHalo(const Lattice& lattice, Value* field) {
