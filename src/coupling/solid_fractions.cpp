@@ -31,11 +31,27 @@ std::ptrdiff_t gridIndex(const Lattice& l, std::array<int, 3> cell, int face_axi
   return l.index(cell[0], cell[1], cell[2]);
 }
 
-template <class Value>
-void copyField(const std::vector<Value>& from, std::vector<Value>& to) {
-  to.resize(from.size());
-#pragma omp parallel for simd schedule(static)
-  for (std::size_t i = 0; i < from.size(); ++i) to[i] = from[i];
+bool isWallFace(const Lattice& l, int axis, int at) { return !l.periodic[axis] && (at == 0 || at == l.n[axis]); }
+
+// f(place, distance): distance to the nearest wall, in cell widths, of a sample of every cell and of the halo, where it
+// is negative; offset: of the sample from its cell's low corner.
+template <class Function>
+void forEachWallDistance(const Lattice& l, const Eigen::Vector3d& offset, Function&& f) {
+#pragma omp parallel for schedule(static)
+  for (int k = -Lattice::kLowHalo; k < l.n[2] + Lattice::kHighHalo; ++k) {
+    for (int j = -Lattice::kLowHalo; j < l.n[1] + Lattice::kHighHalo; ++j) {
+      const Eigen::Vector3d x = Eigen::Vector3d(0.0, j, k) + offset;
+      double beside = kFar;
+      for (int a = 1; a < 3; ++a) {
+        if (!l.periodic[a]) beside = std::min({beside, x[a], l.n[a] - x[a]});
+      }
+      const auto row = l.index(0, j, k);
+      for (int i = -Lattice::kLowHalo; i < l.n[0] + Lattice::kHighHalo; ++i) {
+        const double along = i + offset[0];
+        f(row + i, l.periodic[0] ? beside : std::min({beside, along, l.n[0] - along}));
+      }
+    }
+  }
 }
 
 // f(i, j, k, g) for every place of a body's box; g: its face on the grid, or -1.
@@ -52,48 +68,27 @@ void forEachFace(const Lattice& l, const BodyFractions& box, int axis, Function&
 
 }  // namespace
 
-SolidSampler::SolidSampler(const MacGrid& grid) : grid_(grid) {
-  const Lattice& l = grid.lattice;
-  const auto distanceToWall = [&](const Eigen::Vector3d& x) {  // x in cell widths from the origin
-    double d = kFar;
-    for (int a = 0; a < 3; ++a) {
-      if (!l.periodic[a]) d = std::min({d, x[a], l.n[a] - x[a]});
-    }
-    return d;
-  };
-  for (int a = 0; a < 3; ++a) {
-    walls_.fluid[a].assign(l.size, 0.0);
-    walls_.distance[a].assign(l.size, -kFar);
-    walls_.owner[a].assign(l.size, SolidFractions::kWall);
-  }
-  walls_.cell_distance.assign(l.size, -kFar);
-  walls_.cell_fluid.assign(l.size, 0.0);
-  for (int k = -Lattice::kLowHalo; k < l.n[2] + Lattice::kHighHalo; ++k) {
-    for (int j = -Lattice::kLowHalo; j < l.n[1] + Lattice::kHighHalo; ++j) {
-      for (int i = -Lattice::kLowHalo; i < l.n[0] + Lattice::kHighHalo; ++i) {
-        const auto c = l.index(i, j, k);
-        const Eigen::Vector3d center(i + 0.5, j + 0.5, k + 0.5);
-        walls_.cell_distance[c] = distanceToWall(center);
-        walls_.cell_fluid[c] = walls_.cell_distance[c] > 0.0 ? 1.0 : 0.0;
-        for (int a = 0; a < 3; ++a) {
-          Eigen::Vector3d x = center;
-          x[a] -= 0.5;
-          walls_.distance[a][c] = distanceToWall(x);
-          walls_.fluid[a][c] = walls_.distance[a][c] > 0.0 ? 1.0 : 0.0;
-        }
-      }
-    }
-  }
-}
-
 void SolidSampler::sample(const std::vector<RigidBody>& bodies, SolidFractions& out) {
+  // The tank without bodies. What lies beyond the halo is never looked at.
+  const Lattice& l = grid_.lattice;
   for (int a = 0; a < 3; ++a) {
-    copyField(walls_.fluid[a], out.fluid[a]);
-    copyField(walls_.distance[a], out.distance[a]);
-    copyField(walls_.owner[a], out.owner[a]);
+    out.fluid[a].resize(l.size, 0.0);
+    out.distance[a].resize(l.size, -kFar);
+    out.owner[a].resize(l.size, SolidFractions::kWall);
+    Eigen::Vector3d offset = Eigen::Vector3d::Constant(0.5);
+    offset[a] = 0.0;
+    forEachWallDistance(l, offset, [&](std::ptrdiff_t f, double d) {
+      out.distance[a][f] = d;
+      out.fluid[a][f] = d > 0.0 ? 1.0 : 0.0;
+      out.owner[a][f] = SolidFractions::kWall;
+    });
   }
-  copyField(walls_.cell_distance, out.cell_distance);
-  copyField(walls_.cell_fluid, out.cell_fluid);
+  out.cell_distance.resize(l.size, -kFar);
+  out.cell_fluid.resize(l.size, 0.0);
+  forEachWallDistance(l, Eigen::Vector3d::Constant(0.5), [&](std::ptrdiff_t c, double d) {
+    out.cell_distance[c] = d;
+    out.cell_fluid[c] = d > 0.0 ? 1.0 : 0.0;
+  });
   out.bodies.resize(bodies.size());
   samples_.resize(bodies.size());
   for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -253,7 +248,8 @@ void SolidSampler::close(SolidFractions& out) const {
   for (const BodyFractions& f : out.bodies) {
     for (int a = 0; a < 3; ++a) {
       forEachFace(l, f, a, [&](int i, int j, int k, std::ptrdiff_t g) {
-        if (g >= 0 && walls_.fluid[a][g] > 0.0) out.fluid[a][g] -= f.face[a][f.local(i, j, k)];
+        const std::array<int, 3> at = {f.low[0] + i, f.low[1] + j, f.low[2] + k};
+        if (g >= 0 && !isWallFace(l, a, at[a])) out.fluid[a][g] -= f.face[a][f.local(i, j, k)];
       });
     }
   }
@@ -263,9 +259,9 @@ void SolidSampler::close(SolidFractions& out) const {
       forEachFace(l, f, a, [&](int i, int j, int k, std::ptrdiff_t g) {
         double& fraction = f.face[a][f.local(i, j, k)];
         if (fraction == 0.0) return;
-        if (g < 0 || walls_.fluid[a][g] == 0.0) {
-          const std::array<int, 3> at = {f.low[0] + i, f.low[1] + j, f.low[2] + k};
-          if (g >= 0 && (at[a] == 0 || at[a] == l.n[a])) {
+        const std::array<int, 3> at = {f.low[0] + i, f.low[1] + j, f.low[2] + k};
+        if (g < 0 || isWallFace(l, a, at[a])) {
+          if (g >= 0) {
             f.at_walls.push_back(
                 {a, g, at[a] == 0 ? g : g - l.stride[a], fraction, grid_.faceCenter(a, at[0], at[1], at[2])});
           }

@@ -59,7 +59,7 @@ struct SolidFractions {
 
 class SolidSampler {
  public:
-  explicit SolidSampler(const MacGrid& grid);
+  explicit SolidSampler(const MacGrid& grid) : grid_(grid) {}
   // A body that has hardly moved since it was sampled is not sampled again.
   void sample(const std::vector<RigidBody>& bodies, SolidFractions& out);
   // What was sampled before does not count from now on.
@@ -81,7 +81,6 @@ class SolidSampler {
   void close(SolidFractions& out) const;
 
   MacGrid grid_;
-  SolidFractions walls_;  // the tank without bodies
   std::vector<BodySample> samples_;
 };
 

@@ -101,8 +101,8 @@ FreeSurface::FreeSurface(const MacGrid& grid, double fill_height, const std::vec
 
 void FreeSurface::advect(const FaceField<double>& velocity, double dt, double maximum_speed) {
   if (full_ || empty_ || maximum_speed == 0.0) return;
-  advectCells(grid_, velocity, distance_, dt, kBand, scratch_);
-  distance_.swap(scratch_);
+  advectCells(grid_, velocity, distance_, dt, kBand, scratch_.field);
+  distance_.swap(scratch_.field);
   extendIntoHalo(grid_.lattice, distance_);
   travelled_ += maximum_speed * dt / grid_.h;
   if (travelled_ > kTravelToRedistance) redistance();
@@ -111,7 +111,7 @@ void FreeSurface::advect(const FaceField<double>& velocity, double dt, double ma
 void FreeSurface::redistance() {
   travelled_ = 0.0;
   const Lattice& l = grid_.lattice;
-  std::vector<double>& next = scratch_;
+  std::vector<double>& next = scratch_.field;
   next.assign(l.size, kFar);
   std::vector<std::uint8_t> fixed(l.size, 0);
   std::vector<char> crossed(l.n[2], 0);
@@ -178,7 +178,7 @@ void FreeSurface::redistance() {
 void FreeSurface::extendIntoSolids(const std::vector<double>& solid_distance) {
   if (full_ || empty_) return;
   const Lattice& l = grid_.lattice;
-  scratch_ = distance_;
+  scratch_.field = distance_;
   const Eigen::Vector3d offset = nodeOffset(-1);
 #pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int k = 0; k < l.n[2]; ++k) {
@@ -192,11 +192,11 @@ void FreeSurface::extendIntoSolids(const std::vector<double>& solid_distance) {
         const double length = out.norm();
         if (!(length > 0.0)) continue;
         const Eigen::Vector3d x = Eigen::Vector3d(i, j, k) + offset + out * ((kSampleBeyondSolid - depth) / length);
-        scratch_[c] = sampleLinear(l, distance_, x - offset);
+        scratch_.field[c] = sampleLinear(l, distance_, x - offset);
       }
     }
   }
-  distance_.swap(scratch_);
+  distance_.swap(scratch_.field);
   extendIntoHalo(l, distance_);
 }
 

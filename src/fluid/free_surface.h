@@ -55,6 +55,13 @@ class FreeSurface {
   struct CutCells {
     std::vector<CutPlane> planes;
   };
+  // Room to work in; a copy has its own.
+  struct Scratch {
+    Scratch() = default;
+    Scratch(const Scratch&) {}
+    Scratch& operator=(const Scratch&) { return *this; }
+    std::vector<double> field;
+  };
 
   void redistance();
   CutCells findCutCells(double margin, const std::vector<double>& cell_fluid) const;
@@ -65,7 +72,7 @@ class FreeSurface {
   bool empty_ = false;
   double travelled_ = 0.0;  // cells, since the distance was last made one
   std::vector<double> distance_;
-  std::vector<double> scratch_;
+  Scratch scratch_;
 };
 
 }  // namespace monolith
