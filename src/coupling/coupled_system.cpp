@@ -27,9 +27,13 @@ std::unique_ptr<StepSolver> makeSolver(SolverName name) {
 struct CoupledSystem::Impl {
   Impl(const MacGrid& grid, SolverName name, CouplingName coupling_name, Discretisation discretisation,
        double sticking_viscosity)
-      : problem(grid, discretisation, sticking_viscosity), solver(makeSolver(name)), coupling(coupling_name) {}
+      : problem(grid, discretisation, sticking_viscosity),
+        solver_name(name),
+        solver(makeSolver(name)),
+        coupling(coupling_name) {}
 
   StepProblem problem;
+  SolverName solver_name;
   std::unique_ptr<StepSolver> solver;
   CouplingName coupling;
   VariableViscosity viscosity;
@@ -60,6 +64,8 @@ CoupledSystem::CoupledSystem(const MacGrid& grid, SolverName solver, CouplingNam
                              Discretisation discretisation, double sticking_viscosity)
     : impl_(std::make_unique<Impl>(grid, solver, coupling, discretisation, sticking_viscosity)) {}
 CoupledSystem::~CoupledSystem() = default;
+
+void CoupledSystem::forget() { impl_->solver = makeSolver(impl_->solver_name); }
 
 const StepProblem& CoupledSystem::problem() const { return impl_->problem; }
 

@@ -28,6 +28,9 @@ class CoupledSystem {
                 double sticking_viscosity);
   ~CoupledSystem();
 
+  // What the solver has learnt from the steps so far does not count from now on; assemble() has to follow.
+  void forget();
+
   // Geometry and material of the step; liquid_distance in cell widths with its halo filled. Bodies and distance must
   // outlive the solve; in `solids` the liquid that sticks to the bodies is moved to them (sticking_liquid.h).
   void assemble(SolidFractions& solids, const std::vector<RigidBody>& bodies,

@@ -17,7 +17,7 @@ constexpr double kLargestShift = 0.1;      // cells in one correction
 // Half-width, in cells, of the band around the surface in which the level set is a distance; beyond it is just as large
 // as that, which is further than anyone looks.
 constexpr double kBand = 6.0;
-constexpr int kBandPlanes = 6;  // its reach along an axis
+constexpr int kBandPlanes = static_cast<int>(kBand);  // its reach along an axis
 constexpr double kSampleBeyondSolid = 0.75;  // cells: outside, where the value is the liquid's own
 
 // Solution of the discrete eikonal equation at a cell from its nearest neighbours along each axis.

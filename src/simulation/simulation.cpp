@@ -44,6 +44,7 @@ void Simulation::Impl::initialise() {
   state.mean_liquid = state.coupled.liquid;
   state.mean_contact = state.coupled.contact;
   sampler.forget();
+  system.forget();
   prepareGeometry();
   target_volume = state.surface[0].volume(solids.cell_fluid);
   state.typical_viscosity = viscosity_law.viscosity(0.0);

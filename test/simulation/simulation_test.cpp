@@ -302,5 +302,36 @@ TEST(Simulation, AWrenchPushesAndResetForgetsIt) {
   EXPECT_LT(simulation.bodyStates()[0].velocity.norm(), 1e-9);
 }
 
+// Boxes that are pushed about at their limit of friction: the solver learns from steps how to make the next, and must not
+// know anything of them after a reset.
+TEST(Simulation, ARunAfterAResetIsTheSameToTheBit) {
+  Scene scene = tank(0.08, 2.0);
+  scene.contact.friction = 0.3;
+  scene.bodies = {boxBody("low", {0.05, 0.04, 0.02}, 2000.0, {0.07, 0.08, 0.01}),
+                  boxBody("high", {0.03, 0.03, 0.02}, 2000.0, {0.07, 0.08, 0.03})};
+  Simulation simulation(scene);
+  std::vector<Eigen::Vector3d> velocities[2];
+  int solves[2] = {};
+  for (int run = 0; run < 2; ++run) {
+    // Ends where contacts take more than one solve.
+    for (int step = 0; step < 20; ++step) {
+      for (int body = 0; body < 2; ++body) {
+        const double angle = 1.9 * step + body;
+        Wrench push;
+        push.force = 0.3 * scene.bodies[body].mass * 9.81 * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0);
+        simulation.setWrench(body, push);
+      }
+      const StepReport report = simulation.step();
+      ASSERT_TRUE(report.committed()) << report.message;
+      solves[run] += report.liquid_solves - report.substeps;
+      for (const BodyState& state : simulation.bodyStates()) velocities[run].push_back(state.velocity);
+    }
+    simulation.reset();
+  }
+  EXPECT_GT(solves[0], 0);
+  EXPECT_EQ(solves[0], solves[1]);
+  for (std::size_t i = 0; i < velocities[0].size(); ++i) EXPECT_EQ(velocities[0][i], velocities[1][i]) << i;
+}
+
 }  // namespace
 }  // namespace monolith

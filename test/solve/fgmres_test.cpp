@@ -118,6 +118,20 @@ TEST(Fgmres, NothingIsLeftOfUnknownsThatAreNoMore) {
   EXPECT_LE(iterations[1], iterations[0]);
 }
 
+TEST_F(FgmresTest, StopsAtAPartOfTheFirstResidualIfThatIsMore) {
+  KrylovOptions options;
+  options.absolute_tolerance = 1e-10;
+  options.relative_tolerance = 0.03;
+  std::vector<double> x(rhs.size(), 0.0);
+  const KrylovReport rough = Fgmres().solve(maps(), rhs, x, options);
+  EXPECT_TRUE(rough.converged);
+  EXPECT_LE(rough.residual, 0.03 * rough.initial_residual);
+  EXPECT_GT(rough.residual, 1e-10);
+  options.absolute_tolerance = 0.5 * rough.residual;
+  options.relative_tolerance = 0.0;
+  EXPECT_LE(Fgmres().solve(maps(), rhs, x, options).residual, options.absolute_tolerance);
+}
+
 TEST_F(FgmresTest, SaysWhenItHasNotConverged) {
   std::vector<double> x(rhs.size(), 0.0);
   KrylovOptions options;
