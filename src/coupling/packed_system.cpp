@@ -12,8 +12,9 @@ namespace {
 // and so many in all, for each unknown of the bodies, are worth estimating it anew.
 constexpr double kStaleIterations = 1.2;
 constexpr double kWorthRenewing = 0.7;
-// So is a viscous number that has changed by this factor.
-constexpr double kStaleNumber = 1.5;
+// So is a viscous number that has changed by this factor. Sub-steps and the order of a step change it by less all the
+// time, which costs fewer iterations than it would to follow.
+constexpr double kStaleNumber = 4.0;
 // Fewer decades tell nothing about what one costs.
 constexpr double kLeastDecades = 1.0;
 constexpr double kLeastCost = 1.5;  // iterations a decade, below which none is too many

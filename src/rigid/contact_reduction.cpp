@@ -5,6 +5,14 @@
 #include <numeric>
 
 namespace monolith {
+namespace {
+
+// rad. A contact that lies no higher above the lowest than its distance from those kept times this may close by a small
+// rotation; one further up counts as so much nearer. Else the far rim of a round body, which is in reach but cannot touch
+// yet, takes the places of those that carry it.
+constexpr double kSmallRotation = 0.05;
+
+}  // namespace
 
 void mergeCoincident(std::vector<Contact>& contacts, double distance) {
   std::vector<Contact> kept;
@@ -34,9 +42,11 @@ void reduceContacts(std::vector<Contact>& contacts, int most) {
   const auto take = [&](int i) {
     keep[i] = 1;
     for (int j = 0; j < count; ++j) {
-      nearest[j] = std::min(nearest[j], (contacts[j].point - contacts[i].point).squaredNorm());
+      nearest[j] = std::min(nearest[j], (contacts[j].point - contacts[i].point).norm());
     }
   };
+  const double lowest = contacts[by_gap.front()].gap;
+  const auto reach = [&](int i) { return nearest[i] - (contacts[i].gap - lowest) / kSmallRotation; };
   // Flat contact has no deepest point: then all but the first go by distance.
   const int deepest = std::max(1, most / 4);
   const double spread_of_gaps = contacts[by_gap.back()].gap - contacts[by_gap.front()].gap;
@@ -50,7 +60,7 @@ void reduceContacts(std::vector<Contact>& contacts, int most) {
     int farthest = -1;
     for (const int i : by_gap) {
       // Ties within round-off go to the earlier one.
-      if (!keep[i] && (farthest < 0 || nearest[i] > nearest[farthest] * (1.0 + 1e-9))) farthest = i;
+      if (!keep[i] && (farthest < 0 || reach(i) > reach(farthest) + 1e-9 * nearest[farthest])) farthest = i;
     }
     take(farthest);
     ++taken;

@@ -11,7 +11,8 @@ namespace monolith {
 // deepest, in the place of the first.
 void mergeCoincident(std::vector<Contact>& contacts, double distance);
 
-// Keeps at most `most`: the deepest quarter of them, and those farthest from the ones already kept.
+// Keeps at most `most`: the deepest quarter of them, and those farthest from the ones already kept, of such as a small
+// rotation could close.
 void reduceContacts(std::vector<Contact>& contacts, int most);
 
 }  // namespace monolith

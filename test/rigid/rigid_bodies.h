@@ -1,6 +1,7 @@
 #pragma once
 // Bodies for the tests of this folder.
 
+#include <cmath>
 #include <memory>
 #include <random>
 
@@ -60,6 +61,24 @@ inline Shape boxMesh(const Eigen::Vector3d& size) {
                               {2, 4, 6},
                               {1, 3, 5},
                               {3, 7, 5}});
+}
+
+// A torus about z: `around` quadrilaterals along the ring times `across` of the tube, one row of vertices lowest.
+inline Shape ringMesh(double radius, double tube, int around, int across) {
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<Eigen::Vector3i> triangles;
+  for (int i = 0; i < around; ++i) {
+    for (int j = 0; j < across; ++j) {
+      const double u = 2.0 * M_PI * i / around, v = 2.0 * M_PI * j / across - 0.5 * M_PI;
+      const double r = radius + tube * std::cos(v);
+      vertices.emplace_back(r * std::cos(u), r * std::sin(u), tube * std::sin(v));
+      const int a = i * across + j, b = i * across + (j + 1) % across;
+      const int c = (i + 1) % around * across + j, d = (i + 1) % around * across + (j + 1) % across;
+      triangles.emplace_back(a, c, b);
+      triangles.emplace_back(b, c, d);
+    }
+  }
+  return meshShape(vertices, triangles);
 }
 
 // An L (seen along y): the block [0, 2] x [0, 1] x [0, 2] without ]1, 2] x . x ]1, 2]. Not convex.
