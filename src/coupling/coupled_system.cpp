@@ -65,7 +65,10 @@ CoupledSystem::CoupledSystem(const MacGrid& grid, SolverName solver, CouplingNam
     : impl_(std::make_unique<Impl>(grid, solver, coupling, discretisation, sticking_viscosity)) {}
 CoupledSystem::~CoupledSystem() = default;
 
-void CoupledSystem::forget() { impl_->solver = makeSolver(impl_->solver_name); }
+void CoupledSystem::forget() {
+  impl_->problem.forget();
+  impl_->solver = makeSolver(impl_->solver_name);
+}
 
 const StepProblem& CoupledSystem::problem() const { return impl_->problem; }
 

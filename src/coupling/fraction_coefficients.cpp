@@ -218,7 +218,7 @@ void buildCoarseFractionLevels(const Lattice& lattice, const FractionGeometry& g
     viscous_number *= 0.25;
     l = coarse;
     buildFractionCoefficients(l, g, viscous_number, coefficients);
-    if (levels.size() <= count) levels.emplace_back();
+    if (levels.size() <= count) levels.resize(count + 1);
     levels[count++] = convertCoefficients<float>(coefficients);
   }
   levels.resize(count);

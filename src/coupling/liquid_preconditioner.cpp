@@ -45,15 +45,15 @@ void LiquidPreconditioner::set(const StepProblem& problem, const FaceBlocks<floa
     number *= *std::max_element(problem.cell_viscosity.begin(), problem.cell_viscosity.end());
   }
   std::size_t levels = 1;
-  while (levels < problem.coarse.size() && number > kLeastCoarsenedNumber) {
+  while (levels < problem.coarse.levels.size() && number > kLeastCoarsenedNumber) {
     ++levels;
     number *= 0.25;
   }
   if (problem.coefficients.viscous) {
-    velocity_.set(l, faces, transfer, problem.coarse, levels,
+    velocity_.set(l, faces, transfer, problem.coarse.levels, levels, problem.coarse.generation(),
                   projects() ? kSmootherDegree : kViscousSmootherDegree);
   }
-  pressure_.set(l, problem.coefficients.has_pressure, conductance);
+  pressure_.set(l, problem.coefficients.has_pressure, conductance, &problem.steady);
   assignZero(l.size, g_);
   assignZero(l.size, weight_);
   if (!problem.coefficients.viscous) return;

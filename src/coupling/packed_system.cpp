@@ -25,8 +25,8 @@ void PackedSystem::set(StepProblem& problem) {
   problem_ = &problem;
   const StepProblem& p = problem;
   krylov_.forget();
-  buildFaceBlocks(p.coefficients, faces_, &transfer_, &conductance_);
-  buildCellBlocks(p.coefficients, cells_);
+  buildFaceBlocks(p.coefficients, faces_, &transfer_, &conductance_, &p.steady);
+  buildCellBlocks(p.coefficients, cells_, &p.steady);
   faces_single_ = faces_.converted<float>();
   cells_single_ = cells_.converted<float>();
   flux_weight_ = std::max(1.0, 2.0 * p.viscous_number);

@@ -99,14 +99,7 @@ void SolidSampler::sample(const std::vector<RigidBody>& bodies, SolidFractions& 
 }
 
 bool SolidSampler::serves(const BodySample& sample, const RigidBody& body) const {
-  if (sample.shape != body.distance.get()) return false;
-  const Eigen::Isometry3d now = body.pose();
-  const Eigen::AlignedBox3d box = body.distance->bounds();
-  for (int corner = 0; corner < 8; ++corner) {
-    const Eigen::Vector3d p = box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner));
-    if ((now * p - sample.pose * p).norm() > kHardlyMoved * grid_.h) return false;
-  }
-  return true;
+  return sample.shape == body.distance.get() && !(body.distanceFrom(sample.pose) > kHardlyMoved * grid_.h);
 }
 
 void SolidSampler::sampleBody(const RigidBody& body, BodySample& out) const {

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "coupling/fraction_coefficients.h"
+#include "coupling/row_kinds.h"
 #include "solve/velocity_multigrid.h"
 
 namespace monolith {
@@ -33,7 +34,6 @@ void StepProblem::assemble(SolidFractions& solids, const std::vector<RigidBody>&
 
   sticking.clear();
   cell_viscosity.clear();
-  if (coarse.empty()) coarse.resize(1);
   if (discretisation == Discretisation::kFitted) {
     assembleFitted(solids, liquid_distance, rates);
   } else {
@@ -75,26 +75,44 @@ void StepProblem::assemble(SolidFractions& solids, const std::vector<RigidBody>&
   regions = findPressureRegions(coefficients, rows, moves);
 }
 
+void StepProblem::forget() {
+  steady.forget();
+  coarse.forget();
+}
+
 void StepProblem::assembleFitted(SolidFractions& solids, const std::vector<double>& liquid_distance, bool rates) {
-  sticking.clear();
-  if (viscous_number > 0.0 && viscous_number * impulse_scale >= sticking_viscosity * dt * grid.h) {
+  const bool sticks = viscous_number > 0.0 && viscous_number * impulse_scale >= sticking_viscosity * dt * grid.h;
+  if (sticks) {
     attachStickingLiquid(grid, solids, sticking);
     for (StickingLiquid& s : sticking) {
       s.fraction *= liquidPart(liquid_distance[s.face - grid.lattice.stride[s.axis]], liquid_distance[s.face]);
     }
   }
   const StokesGeometry geometry{&solids.fluid, &solids.distance, &liquid_distance, &solids.cell_distance};
-  buildCoefficients(grid.lattice, geometry, viscous_number, coefficients, rates ? &strain : nullptr);
+  const RowKinds found = findRowKinds(grid.lattice, solids.bodies, liquid_distance);
+  if (rates) {
+    steady.forget();
+  } else {
+    steady.update(grid.lattice, found.kinds, {viscous_number, sticks ? 1.0 : 0.0});
+  }
+  buildCoefficients(grid.lattice, geometry, viscous_number, coefficients, rates ? &strain : nullptr,
+                    rates ? nullptr : &steady);
   buildBodyRows(grid, solids, *bodies, geometry, coefficients, rows);
-  buildCoarseLevels(grid.lattice, geometry, viscous_number, leastCoarsened(rates), coarse);
+  if (rates || !found.full || !coarse.serve(*bodies, viscous_number, grid.h)) {
+    buildCoarseLevels(grid.lattice, geometry, viscous_number, leastCoarsened(rates), coarse.levels);
+    coarse.built(*bodies, viscous_number, !rates && found.full);
+  }
 }
 
 void StepProblem::assembleFractions(const SolidFractions& solids, const std::vector<double>& liquid_distance,
                                     bool rates) {
+  steady.forget();
   const FractionGeometry geometry = sampleFractions(grid, *bodies, solids, liquid_distance, viscous_number > 0.0);
   buildFractionCoefficients(grid.lattice, geometry, viscous_number, coefficients, rates ? &strain : nullptr);
   buildFractionRows(grid, solids, *bodies, coefficients, rows);
-  buildCoarseFractionLevels(grid.lattice, geometry, liquid_distance, viscous_number, leastCoarsened(rates), coarse);
+  buildCoarseFractionLevels(grid.lattice, geometry, liquid_distance, viscous_number, leastCoarsened(rates),
+                            coarse.levels);
+  coarse.built(*bodies, viscous_number, false);
   flux_share = geometry.fluid;
   const Lattice& l = grid.lattice;
   std::vector<std::uint8_t> has_pressure = coefficients.has_pressure;

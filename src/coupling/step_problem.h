@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "coupling/coarse_levels.h"
 #include "coupling/enclosed_rows.h"
 #include "coupling/pressure_regions.h"
 #include "coupling/solid_fractions.h"
@@ -58,6 +59,9 @@ class StepProblem {
   // Liquid in a face's control volume: (rho h^3) liquidMass() u is its momentum.
   FaceField<double> liquidMass() const;
 
+  // Everything is built anew the next time.
+  void forget();
+
   Eigen::Index bodyUnknowns() const { return static_cast<Eigen::Index>(6 * free.size()); }
 
   MacGrid grid;
@@ -67,7 +71,8 @@ class StepProblem {
   BodyRows rows;
   FaceField<double> flux_share;  // U = flux_share u, 0 without an unknown; empty: U = u
   std::vector<PressureRegion> regions;
-  std::vector<StaggeredCoefficients<float>> coarse;  // multigrid levels; [0] is left empty
+  SteadyRows steady;         // of the coefficients, since the last assembly
+  CoarseLevels coarse;
   const std::vector<RigidBody>* bodies = nullptr;
   double viscous_number = 0.0;        // of the reference viscosity where viscosity varies
   std::vector<float> cell_viscosity;  // relative to it, per cell; empty: constant

@@ -46,14 +46,7 @@ void closeHalo(const Lattice& l, int face_axis, std::vector<double>& distance) {
 void prepareToFill(const Lattice& l, bool viscous, StaggeredCoefficients<double>& out) {
   const bool same = out.lattice.n == l.n && out.lattice.periodic == l.periodic && out.viscous == viscous &&
                     out.has_pressure.size() == l.size;
-  if (!same) {
-    out.resize(l, viscous);
-    return;
-  }
-  for (auto& field : out.drag) {
-#pragma omp parallel for simd schedule(static)
-    for (std::size_t i = 0; i < field.size(); ++i) field[i] = 0.0;
-  }
+  if (!same) out.resize(l, viscous);
 }
 
 // The viscous samples of one cell, whatever is around it.
@@ -146,11 +139,13 @@ void StrainScales::fillHalos(const Lattice& l) {
 }
 
 void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double viscous_number,
-                       StaggeredCoefficients<double>& out, StrainScales* strain) {
+                       StaggeredCoefficients<double>& out, StrainScales* strain, const SteadyRows* steady) {
   prepareToFill(l, viscous_number > 0.0, out);
+  const auto keeps = [&](int j, int k) { return steady != nullptr && steady->steady(j, k); };
   const auto& liquid = *geometry.liquid_distance;
   const int width = l.faceEnd(0);
-  forEachHeavyRow(l, [&](std::ptrdiff_t row, int, int) {
+  forEachHeavyRow(l, [&](std::ptrdiff_t row, int j, int k) {
+    if (keeps(j, k)) return;
     for (int a = 0; a < 3; ++a) {
       const double* fluid = (*geometry.fluid)[a].data();
       for (auto f = row; f < row + width; ++f) {
@@ -167,7 +162,7 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
   }
   const int end[3] = {l.n[0], l.n[1], l.n[2]};
   forEachHeavyRow(l, [&](std::ptrdiff_t row, int j, int k) {
-    if (j >= end[1] || k >= end[2]) return;
+    if (j >= end[1] || k >= end[2] || keeps(j, k)) return;
     for (auto c = row; c < row + end[0]; ++c) {
       double sum = 0.0;
       for (int a = 0; a < 3; ++a) sum += out.open[a][c] + out.open[a][c + l.stride[a]];
@@ -178,7 +173,9 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
 
   if (strain != nullptr) strain->resize(l);
   const SampleBuilder samples(l, geometry, out);
-  forEachHeavyRow(l, [&](std::ptrdiff_t row, int, int) {
+  forEachHeavyRow(l, [&](std::ptrdiff_t row, int j, int k) {
+    if (keeps(j, k)) return;
+    for (auto& field : out.drag) std::fill_n(field.data() + row, width, 0.0);
     thread_local std::vector<std::uint8_t> mark;
     samples.markCells(row, width, mark);
     buildPlainRow(samples, viscous_number, row, mark, out);
@@ -223,7 +220,7 @@ void buildCoarseLevels(const Lattice& lattice, const StokesGeometry& geometry, d
     l = coarse;
     StokesGeometry g{&fluid, &distance, &liquid};
     buildCoefficients(l, g, viscous_number, coefficients);
-    if (levels.size() <= count) levels.emplace_back();
+    if (levels.size() <= count) levels.resize(count + 1);
     levels[count++] = convertCoefficients<float>(coefficients);
   }
   levels.resize(count);

@@ -25,6 +25,7 @@
 #include "fluid/mac_grid.h"
 #include "rigid/rigid_body.h"
 #include "solve/staggered_operator.h"
+#include "solve/steady_rows.h"
 
 namespace monolith {
 
@@ -51,8 +52,10 @@ struct StrainScales {
 };
 
 // Coefficients of one level; `viscous_number` is that of the level. `strain`, if wanted, is filled only with viscosity.
+// Of steady rows what is there is kept; not with `strain`.
 void buildCoefficients(const Lattice& lattice, const StokesGeometry& geometry, double viscous_number,
-                       StaggeredCoefficients<double>& out, StrainScales* strain = nullptr);
+                       StaggeredCoefficients<double>& out, StrainScales* strain = nullptr,
+                       const SteadyRows* steady = nullptr);
 
 // Rows of the bodies on the finest level, for coefficients built from the same geometry.
 void buildBodyRows(const MacGrid& grid, const SolidFractions& solids, const std::vector<RigidBody>& bodies,

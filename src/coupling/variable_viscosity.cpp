@@ -80,7 +80,7 @@ void VariableViscosity::start(const StepProblem& problem, double reference) {
   drag_ = problem.coefficients.drag;
   shear_ = problem.coefficients.shear;
   shear_rows_ = problem.rows.shear;
-  coarse_ = problem.coarse;
+  coarse_ = problem.coarse.levels;
   applied_.assign(7 * problem.grid.lattice.size, 0.0);
 }
 
@@ -240,7 +240,8 @@ void VariableViscosity::apply(const ViscosityField& field, StepProblem& problem)
 }
 
 void VariableViscosity::scaleCoarse(const ViscosityField& field, StepProblem& problem) const {
-  problem.coarse = coarse_;
+  problem.coarse.levels = coarse_;
+  problem.coarse.change();
   Lattice l = problem.grid.lattice;
   std::vector<double> value(l.size, 0.0), has(l.size, 0.0);
   for (int k = 0; k < l.n[2]; ++k) {
@@ -252,8 +253,8 @@ void VariableViscosity::scaleCoarse(const ViscosityField& field, StepProblem& pr
       }
     }
   }
-  for (std::size_t level = 1; level < problem.coarse.size(); ++level) {
-    StaggeredCoefficients<float>& c = problem.coarse[level];
+  for (std::size_t level = 1; level < problem.coarse.levels.size(); ++level) {
+    StaggeredCoefficients<float>& c = problem.coarse.levels[level];
     const Lattice coarse = c.lattice;
     std::vector<double> to, to_has;
     restrictCells(l, value, coarse, to);

@@ -39,6 +39,17 @@ struct RigidBody {
     const Eigen::Matrix3d R = q_WB.toRotationMatrix();
     return R * inertia_Bcm * R.transpose();
   }
+  // m, that any of its points is from where it was at a pose X_WB.
+  double distanceFrom(const Eigen::Isometry3d& X_WB) const {
+    const Eigen::Isometry3d now = pose();
+    const Eigen::AlignedBox3d box = distance->bounds();
+    double farthest = 0.0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Eigen::Vector3d p = box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner));
+      farthest = std::max(farthest, (now * p - X_WB * p).norm());
+    }
+    return farthest;
+  }
   // Velocity of the material point that is now at p_W.
   Eigen::Vector3d velocityAt(const Eigen::Vector3d& p_W) const {
     return twist.head<3>() + twist.tail<3>().cross(p_W - p_WBcm);

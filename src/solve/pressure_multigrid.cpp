@@ -26,7 +26,7 @@ float liftedToAir(float g, bool inside) {
 }  // namespace
 
 void PressureMultigrid::set(const Lattice& l, const std::vector<std::uint8_t>& has_pressure,
-                            const FaceField<float>& conductance) {
+                            const FaceField<float>& conductance, const SteadyRows* steady) {
   std::size_t count = 1;
   for (Lattice c = l; canCoarsen(c); c = coarsened(c)) ++count;
   levels_.resize(count);
@@ -66,13 +66,13 @@ void PressureMultigrid::set(const Lattice& l, const std::vector<std::uint8_t>& h
 #pragma omp parallel for simd schedule(static)
   for (std::size_t c = 0; c < l.size; ++c) network.beyond[c] = network.kind[c] == kAir;
   levels_[0].lattice = l;
-  finish(network, levels_[0]);
+  finish(network, steady, levels_[0]);
   Network last;
   for (std::size_t index = 1; index < count; ++index) {
     Network coarse;
     levels_[index].lattice = coarsened(levels_[index - 1].lattice);
     coarsen(levels_[index - 1].lattice, index == 1 ? network : last, levels_[index].lattice, coarse);
-    finish(coarse, levels_[index]);
+    finish(coarse, nullptr, levels_[index]);
     findExtension(coarse, levels_[index]);
     last = std::move(coarse);
   }
@@ -126,13 +126,17 @@ void PressureMultigrid::coarsen(const Lattice& from, const Network& fine, const 
   });
 }
 
-void PressureMultigrid::finish(const Network& network, Level& level) const {
+void PressureMultigrid::finish(const Network& network, const SteadyRows* steady, Level& level) const {
   const Lattice& l = level.lattice;
-  for (auto* field : {&level.x, &level.next, &level.d, &level.mask}) assignZero(l.size, *field);
+  for (auto* field : {&level.x, &level.next, &level.d}) assignZero(l.size, *field);
+  if (!level.blocks.wouldKeep(steady)) assignZero(l.size, level.mask);
   if (&level != &levels_[0]) assignZero(l.size, level.b);
   level.blocks.build(l, {0}, [&](int, std::ptrdiff_t row, int width, auto& k) {
     const std::uint8_t* kind = network.kind.data() + row;
-    if (std::find(kind, kind + width, kLiquid) == kind + width) return false;
+    if (std::find(kind, kind + width, kLiquid) == kind + width) {
+      std::fill_n(level.mask.data() + row, width, 0.0f);
+      return false;
+    }
     for (int i = 0; i < width; ++i) {
       const auto c = row + i;
       const bool liquid = network.kind[c] == kLiquid;
@@ -144,7 +148,7 @@ void PressureMultigrid::finish(const Network& network, Level& level) const {
       level.mask[c] = k[kInverse][i] = sum > 0.0f ? 1.0f / sum : 0.0f;
     }
     return true;
-  });
+  }, steady);
   // L is an M-matrix: the spectrum of D^-1 L lies in [0, 2].
   level.range.largest = 2.0f;
   level.range.ratio = kRatio;

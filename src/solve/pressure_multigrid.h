@@ -18,8 +18,10 @@ namespace monolith {
 
 class PressureMultigrid {
  public:
-  // The network of the finest level, its halo filled: the coarser ones follow from it.
-  void set(const Lattice& lattice, const std::vector<std::uint8_t>& has_pressure, const FaceField<float>& conductance);
+  // The network of the finest level, its halo filled: the coarser ones follow from it. steady: rows in which nothing has
+  // changed since the last call.
+  void set(const Lattice& lattice, const std::vector<std::uint8_t>& has_pressure, const FaceField<float>& conductance,
+           const SteadyRows* steady = nullptr);
 
   // Approximate solution x of L x = b, zero outside of cells with pressure; its halo is filled. It may be changed in
   // place and is valid until the next call.
@@ -55,7 +57,7 @@ class PressureMultigrid {
   };
 
   void coarsen(const Lattice& from, const Network& fine, const Lattice& l, Network& coarse) const;
-  void finish(const Network& network, Level& level) const;
+  void finish(const Network& network, const SteadyRows* steady, Level& level) const;
   void findExtension(const Network& network, Level& level) const;
   void invert(const Network& network, const Level& level);
   void residual(Level& level, float* r) const;

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "solve/lattice.h"
+#include "solve/steady_rows.h"
 
 namespace monolith {
 
@@ -31,8 +32,12 @@ class StencilBlocks {
 
   // fill(component, row, width, out) writes the coefficients of `width` lanes from index `row` on, all zero: no unknown;
   // or returns false, then there is none in the row. `first[component]`: index along x of the first lane of a row.
+  // It is not called for rows that are steady since the last build, if that was of the generation before.
   template <class FillRow>
-  void build(const Lattice& l, const std::vector<int>& first, FillRow&& fill);
+  void build(const Lattice& l, const std::vector<int>& first, FillRow&& fill, const SteadyRows* steady = nullptr);
+
+  // Whether a build with these would leave steady rows as they are.
+  bool wouldKeep(const SteadyRows* steady) const { return steady != nullptr && steady->isSuccessor(generation_); }
 
   // f(component, place, values): for every block, shared among threads; f must write its own lanes only.
   template <class BlockFunction>
@@ -88,21 +93,32 @@ class StencilBlocks {
     }
   }
 
-  std::vector<Block> blocks_;      // by planes, within them by components
-  std::vector<Segment> segments_;  // blocks of one component in one plane
+  std::vector<Block> blocks_;            // by planes, within them by components, then by rows
+  std::vector<Segment> segments_;        // blocks of one component in one plane
   std::vector<Real> values_;
+  std::vector<std::int32_t> row_begin_;  // in blocks_, of every row; one more at the end
+  long generation_ = -2;                 // of the steady rows that it was built with
 };
 
 template <class Real, int Count>
 template <class FillRow>
-void StencilBlocks<Real, Count>::build(const Lattice& l, const std::vector<int>& first, FillRow&& fill) {
+void StencilBlocks<Real, Count>::build(const Lattice& l, const std::vector<int>& first, FillRow&& fill,
+                                       const SteadyRows* steady) {
   struct Plane {
     std::vector<std::vector<Block>> blocks;
+    std::vector<std::int32_t> row_ends;  // blocks up to here, of a component's rows
     std::vector<Real> values;
+    std::vector<std::int32_t> origin;  // of each pattern among the last build's; -1: none
   };
   const int components = static_cast<int>(first.size());
   const int row_blocks = (l.n[0] + kLanes - 1) / kLanes;
+  const int rows = l.faceEnd(1);
   std::vector<Plane> planes(l.faceEnd(2));
+  const bool keeps = wouldKeep(steady) && row_begin_.size() == planes.size() * components * rows + 1;
+  const std::vector<Block> last_blocks = std::move(blocks_);
+  const std::vector<Real> last_values = std::move(values_);
+  const std::vector<std::int32_t> last_begin = std::move(row_begin_);
+  const std::size_t last_patterns = last_values.size() / kSize;
 #pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int k = 0; k < l.faceEnd(2); ++k) {
     Plane& plane = planes[k];
@@ -110,11 +126,30 @@ void StencilBlocks<Real, Count>::build(const Lattice& l, const std::vector<int>&
     Row row;
     for (auto& r : row) r.resize(row_blocks * kLanes);
     std::vector<Real> candidate(kSize);
+    std::vector<std::int32_t> here(keeps ? last_patterns : 0, -1);  // patterns of the last build in this plane
+    const auto add = [&](const Real* values, std::int32_t origin) {
+      plane.values.insert(plane.values.end(), values, values + kSize);
+      plane.origin.push_back(origin);
+      return static_cast<std::int32_t>(plane.origin.size()) - 1;
+    };
     for (int component = 0; component < components; ++component) {
       std::vector<std::int32_t> above(row_blocks, -1);  // patterns of the row before
       std::int32_t last = -1;
-      for (int j = 0; j < l.faceEnd(1); ++j) {
+      for (int j = 0; j < rows; ++j) {
+        std::vector<Block>& blocks = plane.blocks[component];
+        if (j > 0) plane.row_ends.push_back(static_cast<std::int32_t>(blocks.size()));
         const auto start = l.index(first[component], j, k);
+        if (keeps && steady->steady(j, k)) {
+          const std::size_t at = (static_cast<std::size_t>(k) * components + component) * rows + j;
+          for (auto b = last_begin[at]; b < last_begin[at + 1]; ++b) {
+            const Block& block = last_blocks[b];
+            std::int32_t& pattern = here[block.pattern];
+            if (pattern < 0) pattern = add(last_values.data() + block.pattern * kSize, block.pattern);
+            above[(block.place - start) / kLanes] = last = pattern;
+            blocks.push_back({block.place, pattern});
+          }
+          continue;
+        }
         if (!fill(component, start, row_blocks * kLanes, row)) continue;
         // Lanes beyond the row; along a periodic axis they hold images.
         for (int lane = l.faceEnd(0) - first[component]; lane < row_blocks * kLanes; ++lane) {
@@ -130,34 +165,42 @@ void StencilBlocks<Real, Count>::build(const Lattice& l, const std::vector<int>&
                    std::memcmp(plane.values.data() + pattern * kSize, candidate.data(), kSize * sizeof(Real)) == 0;
           };
           std::int32_t pattern = same(above[block]) ? above[block] : same(last) ? last : -1;
-          if (pattern < 0) {
-            pattern = static_cast<std::int32_t>(plane.values.size() / kSize);
-            plane.values.insert(plane.values.end(), candidate.begin(), candidate.end());
-          }
+          if (pattern < 0) pattern = add(candidate.data(), -1);
           above[block] = last = pattern;
-          plane.blocks[component].push_back({static_cast<std::int32_t>(start + block * kLanes), pattern});
+          blocks.push_back({static_cast<std::int32_t>(start + block * kLanes), pattern});
         }
       }
+      plane.row_ends.push_back(static_cast<std::int32_t>(plane.blocks[component].size()));
     }
   }
+  generation_ = steady != nullptr ? steady->generation() : -2;
   blocks_.clear();
   segments_.clear();
   values_.clear();
+  row_begin_.assign(1, 0);
   std::unordered_map<std::string_view, std::int32_t> known;
-  std::vector<std::int32_t> number;
+  std::vector<std::int32_t> number, renumbered(keeps ? last_patterns : 0, -1);
   const auto text = [](const Real* values) {
     return std::string_view(reinterpret_cast<const char*>(values), kSize * sizeof(Real));
   };
   for (const Plane& plane : planes) {
     number.clear();
-    for (std::size_t p = 0; p < plane.values.size(); p += kSize) {
-      const auto [entry, fresh] = known.try_emplace(text(plane.values.data() + p), values_.size() / kSize);
-      if (fresh) values_.insert(values_.end(), plane.values.begin() + p, plane.values.begin() + p + kSize);
-      number.push_back(entry->second);
+    for (std::size_t p = 0; p < plane.origin.size(); ++p) {
+      const std::int32_t origin = plane.origin[p];
+      std::int32_t found = origin < 0 ? -1 : renumbered[origin];
+      if (found < 0) {
+        const Real* values = plane.values.data() + p * kSize;
+        const auto [entry, fresh] = known.try_emplace(text(values), values_.size() / kSize);
+        if (fresh) values_.insert(values_.end(), values, values + kSize);
+        found = entry->second;
+        if (origin >= 0) renumbered[origin] = found;
+      }
+      number.push_back(found);
     }
     for (int component = 0; component < components; ++component) {
       const auto begin = static_cast<std::int32_t>(blocks_.size());
       for (const Block& block : plane.blocks[component]) blocks_.push_back({block.place, number[block.pattern]});
+      for (int j = 0; j < rows; ++j) row_begin_.push_back(begin + plane.row_ends[component * rows + j]);
       const auto end = static_cast<std::int32_t>(blocks_.size());
       if (end > begin) segments_.push_back({component, begin, end});
     }

@@ -130,23 +130,31 @@ void fillFaceRow(const StaggeredCoefficients<From>& c, int a, std::ptrdiff_t row
 
 template <class Real, class From>
 void buildFaceBlocks(const StaggeredCoefficients<From>& c, FaceBlocks<Real>& out, FaceField<float>* transfer,
-                     FaceField<float>* conductance) {
+                     FaceField<float>* conductance, const SteadyRows* steady) {
   const Lattice& l = c.lattice;
+  const bool keeps = out.wouldKeep(steady);
   for (auto* fields : {transfer, conductance}) {
     if (fields == nullptr) continue;
-    for (auto& field : *fields) assignZero(l.size, field);
+    for (auto& field : *fields) {
+      if (!keeps) assignZero(l.size, field);
+    }
   }
   // Along the rows of their own axis faces on the low wall have no unknown.
   const std::vector<int> first = {l.periodic[0] ? 0 : 1, 0, 0};
   out.build(l, first, [&](int a, std::ptrdiff_t row, int width, typename FaceBlocks<Real>::Row& k) {
-    if (isZero(c.mass[a].data() + row, width)) return false;
+    if (isZero(c.mass[a].data() + row, width)) {
+      for (auto* fields : {transfer, conductance}) {
+        if (fields != nullptr) std::fill_n((*fields)[a].data() + row, width, 0.0f);
+      }
+      return false;
+    }
     fillFaceRow<Real>(c, a, row, width, k);
     if (transfer != nullptr) std::copy_n(k[S::kTransfer].data(), width, (*transfer)[a].data() + row);
     if (conductance == nullptr) return true;
     float* g = (*conductance)[a].data() + row;
     for (int i = 0; i < width; ++i) g[i] = static_cast<float>(k[S::kOpen][i] * k[S::kImpulse][i]);
     return true;
-  });
+  }, steady);
   for (auto* fields : {transfer, conductance}) {
     if (fields == nullptr) continue;
     for (auto& field : *fields) fillHalo(l, field);
@@ -154,7 +162,7 @@ void buildFaceBlocks(const StaggeredCoefficients<From>& c, FaceBlocks<Real>& out
 }
 
 template <class Real, class From>
-void buildCellBlocks(const StaggeredCoefficients<From>& c, CellBlocks<Real>& out) {
+void buildCellBlocks(const StaggeredCoefficients<From>& c, CellBlocks<Real>& out, const SteadyRows* steady) {
   const Lattice& l = c.lattice;
   out.build(l, {0}, [&](int, std::ptrdiff_t row, int width, typename CellBlocks<Real>::Row& k) {
     const std::uint8_t* has = c.has_pressure.data() + row;
@@ -167,7 +175,7 @@ void buildCellBlocks(const StaggeredCoefficients<From>& c, CellBlocks<Real>& out
       }
     }
     return true;
-  });
+  }, steady);
 }
 
 // Streams U, p and y: 28 bytes a cell and pass in single precision; see momentum() for the loads.
@@ -270,8 +278,8 @@ void project(const Lattice& l, const FaceBlocks<float>& blocks, const Faces<cons
 
 #define MONOLITH_INSTANTIATE(Real, From)                                                                  \
   template void buildFaceBlocks(const StaggeredCoefficients<From>&, FaceBlocks<Real>&, FaceField<float>*, \
-                                FaceField<float>*);                                                       \
-  template void buildCellBlocks(const StaggeredCoefficients<From>&, CellBlocks<Real>&);
+                                FaceField<float>*, const SteadyRows*);                                    \
+  template void buildCellBlocks(const StaggeredCoefficients<From>&, CellBlocks<Real>&, const SteadyRows*);
 MONOLITH_INSTANTIATE(double, double)
 MONOLITH_INSTANTIATE(float, double)
 MONOLITH_INSTANTIATE(float, float)

@@ -49,12 +49,12 @@ template <class Real>
 using Faces = std::array<Real*, 3>;
 
 // Compresses a level. transfer and conductance (open^2/effective mass) are those per face, as fields; either may be
-// null.
+// null. Of steady rows what is there is kept.
 template <class Real, class From>
 void buildFaceBlocks(const StaggeredCoefficients<From>& c, FaceBlocks<Real>& out, FaceField<float>* transfer,
-                     FaceField<float>* conductance);
+                     FaceField<float>* conductance, const SteadyRows* steady = nullptr);
 template <class Real, class From>
-void buildCellBlocks(const StaggeredCoefficients<From>& c, CellBlocks<Real>& out);
+void buildCellBlocks(const StaggeredCoefficients<From>& c, CellBlocks<Real>& out, const SteadyRows* steady = nullptr);
 
 // The halos of all input that is read at neighbours must be filled. Nothing is written outside of blocks.
 

@@ -17,20 +17,19 @@ Faces<const float> constView(FaceField<float>& f) { return {f[0].data(), f[1].da
 
 void VelocityMultigrid::set(const Lattice& lattice, const FaceBlocks<float>& fine, const FaceField<float>& transfer,
                             const std::vector<StaggeredCoefficients<float>>& coarse, std::size_t count,
-                            int smoother_degree) {
+                            long generation, int smoother_degree) {
   degree_ = smoother_degree;
   levels_.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     Level& level = levels_[i];
+    level.range.largest = static_cast<float>(kLargestScaled);
+    level.range.ratio = count > 1 && i + 1 == count ? kCoarsestRatio : kRatio;
+    level.blocks = i == 0 ? &fine : &level.own;
+    level.transfer = i == 0 ? &transfer : &level.own_transfer;
+    if (i > 0 && level.generation == generation) continue;
+    level.generation = i == 0 ? -1 : generation;
     level.lattice = i == 0 ? lattice : coarse[i].lattice;
-    if (i == 0) {
-      level.blocks = &fine;
-      level.transfer = &transfer;
-    } else {
-      buildFaceBlocks(coarse[i], level.own, &level.own_transfer, nullptr);
-      level.blocks = &level.own;
-      level.transfer = &level.own_transfer;
-    }
+    if (i > 0) buildFaceBlocks(coarse[i], level.own, &level.own_transfer, nullptr);
     // Zero where nothing is written: other faces than last time may have an unknown now.
     for (auto* fields : {&level.x, &level.next, &level.d}) {
       for (auto& field : *fields) assignZero(level.lattice.size, field);
@@ -38,8 +37,6 @@ void VelocityMultigrid::set(const Lattice& lattice, const FaceBlocks<float>& fin
     if (i > 0) {
       for (auto& field : level.b) assignZero(level.lattice.size, field);
     }
-    level.range.largest = static_cast<float>(kLargestScaled);
-    level.range.ratio = count > 1 && i + 1 == count ? kCoarsestRatio : kRatio;
   }
 }
 

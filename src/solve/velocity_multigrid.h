@@ -18,10 +18,11 @@ constexpr double kLeastCoarsenedNumber = 0.05;
 class VelocityMultigrid {
  public:
   // The finest level with its transfer weights, and the levels below it: coarse[1] to coarse[count - 1], each
-  // coarsened() of the one before. `fine` and `transfer` must outlive the multigrid. smoother_degree: Chebyshev steps before and
-  // after.
+  // coarsened() of the one before. `fine` and `transfer` must outlive the multigrid. generation: of the coarse levels, which are
+  // what they were if it is the last one. smoother_degree: Chebyshev steps before and after.
   void set(const Lattice& lattice, const FaceBlocks<float>& fine, const FaceField<float>& transfer,
-           const std::vector<StaggeredCoefficients<float>>& coarse, std::size_t count, int smoother_degree);
+           const std::vector<StaggeredCoefficients<float>>& coarse, std::size_t count, long generation,
+           int smoother_degree);
   // Approximate solution x of A x = b, zero where there is no unknown; valid until the next call.
   Faces<const float> cycle(const Faces<const float>& b);
 
@@ -36,6 +37,7 @@ class VelocityMultigrid {
     const FaceField<float>* transfer = nullptr;
     ChebyshevRange range;
     Faces<const float> right{};
+    long generation = -1;  // of a coarse level
   };
 
   void smooth(Level& level, int degree, bool from_zero);

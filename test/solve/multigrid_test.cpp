@@ -63,7 +63,7 @@ struct VelocityCase {
       fill = (fill + 1) / 2;
       coarse.push_back(convertCoefficients<float>(box(level, number, fill)));
     }
-    multigrid.set(l, blocks, std::move(transfer), coarse, coarse.size(), 2);
+    multigrid.set(l, blocks, std::move(transfer), coarse, coarse.size(), 1, 2);
     x.assign(3 * l.size, 0.0f);
     b = r = x;
     zero.assign(l.size, 0.0f);

@@ -1,0 +1,175 @@
+// What is kept of rows where nothing has changed is what would be built anew, to the bit, whatever has happened before.
+
+#include "solve/steady_rows.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "coupling/row_kinds.h"
+#include "coupling/step_problem.h"
+#include "scene/solid_body.h"
+#include "solve/pressure_multigrid.h"
+#include "solve/stokes_stencil.h"
+
+namespace monolith {
+namespace {
+
+constexpr double kDensity = 1000.0, kTimeStep = 0.01;
+
+// One assembly of a sequence.
+struct Moment {
+  Eigen::Vector3d position;  // of the sphere, m
+  double fill;               // cells, or more than there are: no surface
+  double slope;              // of the surface
+  double number;             // viscous
+  bool rates = false;
+};
+
+// All that is built for a step, by one object after the other or by the same one.
+struct Built {
+  explicit Built(const MacGrid& grid, double sticking_viscosity)
+      : problem(grid, Discretisation::kFitted, sticking_viscosity) {}
+
+  void make(const Moment& at, bool keep) {
+    const MacGrid& grid = problem.grid;
+    const Lattice& l = grid.lattice;
+    bodies = {makeRigidBody(sphereBody("sphere", 0.11, 1500.0, at.position), 0.5 * grid.h)};
+    SolidSampler(grid).sample(bodies, solids);
+    std::vector<double> liquid(l.size, 0.0);
+    for (int k = 0; k < l.n[2]; ++k) {
+      for (int j = 0; j < l.n[1]; ++j) {
+        for (int i = 0; i < l.n[0]; ++i) liquid[l.index(i, j, k)] = k + 0.5 + at.slope * i - at.fill;
+      }
+    }
+    extendIntoHalo(l, liquid);
+    problem.assemble(solids, bodies, liquid, kDensity, at.number * kDensity * grid.h * grid.h / kTimeStep, kTimeStep,
+                     at.rates);
+    const SteadyRows* steady = keep ? &problem.steady : nullptr;
+    buildFaceBlocks(problem.coefficients, faces, &transfer, &conductance, steady);
+    buildCellBlocks(problem.coefficients, cells, steady);
+    pressure.set(l, problem.coefficients.has_pressure, conductance, steady);
+  }
+
+  StepProblem problem;
+  std::vector<RigidBody> bodies;
+  SolidFractions solids;
+  FaceBlocks<double> faces;
+  CellBlocks<double> cells;
+  FaceField<float> transfer, conductance;
+  PressureMultigrid pressure;
+};
+
+FaceField<double> randomFaces(const Lattice& l, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  FaceField<double> out;
+  for (auto& field : out) {
+    field.resize(l.size);
+    for (double& value : field) value = unit(random);
+    fillHalo(l, field);
+  }
+  return out;
+}
+
+void expectTheSame(Built& kept, Built& fresh, const std::string& what) {
+  const auto &c = kept.problem.coefficients, &d = fresh.problem.coefficients;
+  const Lattice& l = c.lattice;
+  EXPECT_EQ(c.has_pressure, d.has_pressure) << what;
+  for (int a = 0; a < 3; ++a) {
+    EXPECT_EQ(c.mass[a], d.mass[a]) << what;
+    EXPECT_EQ(c.open[a], d.open[a]) << what;
+    EXPECT_EQ(c.drag[a], d.drag[a]) << what;
+    EXPECT_EQ(c.normal[a], d.normal[a]) << what;
+    for (int s = 0; s < 2; ++s) EXPECT_EQ(c.shear[a][s], d.shear[a][s]) << what;
+    EXPECT_EQ(kept.transfer[a], fresh.transfer[a]) << what;
+    EXPECT_EQ(kept.conductance[a], fresh.conductance[a]) << what;
+  }
+  FaceField<double> U = randomFaces(l, 7);
+  std::vector<double> p = U[1];
+  const auto applied = [&](const Built& built) {
+    std::vector<std::vector<double>> out(4, std::vector<double>(l.size, 0.0));
+    const Faces<const double> from{U[0].data(), U[1].data(), U[2].data()};
+    applyMomentum(l, built.faces, c.viscous, from, static_cast<const double*>(p.data()),
+                  Faces<double>{out[0].data(), out[1].data(), out[2].data()});
+    applyDivergence(l, built.cells, from, 0.0, static_cast<const double*>(nullptr), out[3].data());
+    return out;
+  };
+  EXPECT_EQ(applied(kept), applied(fresh)) << what;
+  std::vector<float> g(l.size, 0.0f);
+  for (std::size_t i = 0; i < l.size; ++i) g[i] = d.has_pressure[i] ? static_cast<float>(U[2][i]) : 0.0f;
+  clearHalo(l, g);
+  const float* x = kept.pressure.cycle(g.data());
+  const float* y = fresh.pressure.cycle(g.data());
+  EXPECT_EQ(std::vector<float>(x, x + l.size), std::vector<float>(y, y + l.size)) << what;
+}
+
+int steadyRows(const StepProblem& problem) {
+  const Lattice& l = problem.grid.lattice;
+  int count = 0;
+  for (int k = 0; k < l.n[2]; ++k) {
+    for (int j = 0; j < l.n[1]; ++j) count += problem.steady.steady(j, k);
+  }
+  return count;
+}
+
+TEST(SteadyRows, KeepWhatWouldBeBuiltAnew) {
+  for (const bool open : {false, true}) {
+    MacGrid grid;
+    grid.lattice = Lattice({20, 22, 24}, {open, open, false});
+    grid.h = 0.05;
+    const double full = 100.0;
+    const std::vector<Moment> moments = {{{0.5, 0.5, 0.3}, full, 0.0, 1.0},        {{0.5, 0.51, 0.3}, full, 0.0, 1.0},
+                                         {{0.5, 0.51, 0.3}, full, 0.0, 1.0},       {{0.5, 0.2, 0.9}, full, 0.0, 1.0},
+                                         {{0.5, 0.2, 0.9}, full, 0.0, 0.6},        {{0.5, 0.2, 0.9}, 12.3, 0.0, 0.6},
+                                         {{0.5, 0.21, 0.85}, 12.3, 0.1, 0.6},      {{0.5, 0.21, 0.85}, 12.1, 0.0, 0.6},
+                                         {{0.5, 0.22, 0.8}, 12.1, 0.0, 0.6, true}, {{0.5, 0.23, 0.8}, 12.1, 0.0, 0.6},
+                                         {{0.5, 0.95, 0.8}, 9.4, 0.0, 0.6},        {{0.5, 0.95, 0.8}, 9.4, 0.0, 0.0},
+                                         {{0.5, 0.9, 0.75}, 9.5, 0.02, 0.0},       {{0.5, 0.9, 0.75}, 9.5, 0.02, 1e-3},
+                                         {{0.5, 0.88, 0.7}, 9.6, 0.02, 1e-3},      {{0.5, 0.88, 0.7}, full, 0.0, 50.0},
+                                         {{0.5, 0.6, 0.2}, full, 0.0, 50.0}};
+    // So that liquid sticks at some of the viscous numbers only.
+    const double sticking = 0.01 * kDensity * grid.h * grid.h / kTimeStep;
+    Built kept(grid, sticking);
+    int steady = 0;
+    for (std::size_t i = 0; i < moments.size(); ++i) {
+      kept.make(moments[i], true);
+      steady += steadyRows(kept.problem);
+      Built fresh(grid, sticking);
+      fresh.make(moments[i], false);
+      expectTheSame(kept, fresh, (open ? "open, " : "walls, ") + std::to_string(i));
+      if (i == 11) kept.problem.forget();
+    }
+    // Enough of them for the comparison to tell anything.
+    EXPECT_GT(steady, 1000);
+  }
+}
+
+TEST(SteadyRows, NothingHoldsThatWasBuiltBeforeTheLastGeneration) {
+  const Lattice l({8, 8, 8}, {false, false, false});
+  const std::vector<std::uint8_t> kinds(64, RowKinds::kLiquid);
+  SteadyRows rows;
+  rows.update(l, kinds, {1.0});
+  const long first = rows.generation();
+  EXPECT_FALSE(rows.steady(4, 4));
+  rows.update(l, kinds, {1.0});
+  EXPECT_TRUE(rows.steady(4, 4));
+  EXPECT_TRUE(rows.isSuccessor(first));
+  std::vector<std::uint8_t> changed = kinds;
+  changed[0] = RowKinds::kMixed;
+  rows.update(l, changed, {1.0});
+  EXPECT_FALSE(rows.isSuccessor(first));
+  EXPECT_FALSE(rows.steady(3, 3));
+  EXPECT_TRUE(rows.steady(4, 3));
+  rows.update(l, kinds, {2.0});
+  EXPECT_FALSE(rows.steady(7, 7));
+  const long last = rows.generation();
+  rows.forget();
+  EXPECT_FALSE(rows.isSuccessor(last));
+  rows.update(l, kinds, {2.0});
+  EXPECT_FALSE(rows.steady(7, 7));
+}
+
+}  // namespace
+}  // namespace monolith
