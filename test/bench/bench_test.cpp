@@ -42,13 +42,15 @@ TEST(Bench, WritesALineOfJsonWithEveryKey) {
          {"size",        "threads",    "viscous_number", "bodies",         "contacts",        "solver",
           "ms_per_step", "iterations", "liquid_solves",  "bytes_per_cell", "stage_ms",        "advection",
           "contact",     "geometry",   "solve",          "surface",        "bandwidth_share", "speedup",
-          "cpu_ms",      "commit",     "machine",        "true_error",     "iteration_growth"}) {
+          "cpu_ms",      "commit",     "machine",        "true_error",     "iteration_growth",
+          "contact_factor"}) {
       EXPECT_NE(line.find("\"" + key + "\": "), std::string::npos) << key << " in " << line;
     }
     EXPECT_NE(line.find("\"good\": true"), std::string::npos) << line;
     EXPECT_NE(line.find("\"contacts\": 1,"), std::string::npos) << line;
     EXPECT_NE(line.find("\"bodies\": 2,"), std::string::npos) << line;
     EXPECT_EQ(line.find("\"speedup\": null"), std::string::npos) << line;
+    EXPECT_EQ(line.find("\"contact_factor\": null"), std::string::npos) << line;
   }
   EXPECT_EQ(count, 2);
   std::remove(file.c_str());

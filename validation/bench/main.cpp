@@ -24,6 +24,13 @@ Row measure(const Case& wanted, const Options& options, double stream) {
   const double touched = row.steps.bytes_per_cell * std::pow(wanted.size, 3) * row.steps.iterations;
   row.bandwidth = touched / (1e-3 * row.steps.solve_ms);
   row.bandwidth_share = row.bandwidth / stream;
+  if (wanted.contacts > 0) {
+    Case apart = wanted;
+    apart.apart = true;
+    const auto steps =
+        inChild<StepFigures>([&] { return measureSteps(apart, row.accuracy.tolerance, options.repetitions); });
+    if (steps.good && steps.contacts == 0) row.contact_factor = row.steps.ms_per_step / steps.ms_per_step;
+  }
   if (!options.compare) return row;
   Case other = wanted;
   other.solver = options.against;

@@ -71,7 +71,8 @@ Times whole steps of a cubic tank for every combination of the lists and prints 
   --threads          threads                                      (default 1,2, as far as there are cores)
   --viscous-number   nu dt/h^2                                    (default 1,100)
   --bodies           free spheres in the liquid; one alone is a quarter of the tank wide        (default 1)
-  --contacts         contact points, of further boxes and spheres that rest on the floor and each other (default 0)
+  --contacts         contact points, of further boxes and spheres that rest on the floor and each other (default 0);
+                     with them the same bodies a cell apart are timed, too
   --solver           fast, direct, reference                      (default fast)
   --against          also the ratio of the times of one solve, from rest, to that of this solver at equal true error
   --fill             part of the tank's height that is liquid; 1: full and closed               (default 1)

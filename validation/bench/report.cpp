@@ -11,10 +11,11 @@ void printHead(std::FILE* to) {
       to,
       "Times in ms of the median step; iter: Krylov iterations a step, x: against the first size; solves: with\n"
       "the whole liquid; B/cell: memory at its peak; bw: bandwidth of the solve if each iteration went through\n"
-      "that memory once, part of this machine's; scale: against the first number of threads.\n"
-      "%5s %3s %8s %6s %8s %9s %8s %7s | %8s %6s %6s %6s %8s %6s %6s | %7s %5s %6s %6s %5s %5s %8s %8s\n",
+      "that memory once, part of this machine's; scale: against the first number of threads; touch: against the same\n"
+      "bodies a cell apart.\n"
+      "%5s %3s %8s %6s %8s %9s %8s %7s | %8s %6s %6s %6s %8s %6s %6s | %7s %5s %6s %6s %5s %5s %6s %6s %8s\n",
       "cells", "thr", "nu dt/h2", "bodies", "contacts", "solver", "tol", "error", "ms/step", "advect", "contct", "geom",
-      "solve", "surf", "other", "cpu ms", "iter", "x", "solves", "B/cel", "bw", "scale", "speedup");
+      "solve", "surf", "other", "cpu ms", "iter", "x", "solves", "B/cel", "bw", "scale", "touch", "speedup");
 }
 
 void printRow(const Row& row, std::FILE* to) {
@@ -27,15 +28,20 @@ void printRow(const Row& row, std::FILE* to) {
     return;
   }
   std::fprintf(to,
-               "%8.1e %7.1e | %8.1f %6.1f %6.1f %6.1f %8.1f %6.1f %6.1f | %7.1f %5.1f %6.2f %6.1f %5.0f %5.2f %8.2f ",
+               "%8.1e %7.1e | %8.1f %6.1f %6.1f %6.1f %8.1f %6.1f %6.1f | %7.1f %5.1f %6.2f %6.1f %5.0f %5.2f %6.2f ",
                row.accuracy.tolerance, row.accuracy.error, s.ms_per_step, s.advection_ms, s.contact_ms, s.geometry_ms,
                s.solve_ms, s.surface_ms, s.other_ms, s.cpu_ms, s.iterations, row.iteration_growth, s.liquid_solves,
                s.bytes_per_cell, row.bandwidth_share, row.thread_speedup);
-  if (row.speedup > 0.0) {
-    std::fprintf(to, "%8.1f\n", row.speedup);
-  } else {
-    std::fprintf(to, "%8s\n", "-");
-  }
+  const auto printFactor = [&](double factor, const char* format) {
+    if (factor > 0.0) {
+      std::fprintf(to, format, factor);
+    } else {
+      std::fprintf(to, "%6s ", "-");
+    }
+  };
+  printFactor(row.contact_factor, "%6.2f ");
+  printFactor(row.speedup, "%8.1f");
+  std::fprintf(to, "\n");
 }
 
 std::string toJson(const Row& row, const Origin& origin) {
@@ -71,6 +77,7 @@ std::string toJson(const Row& row, const Origin& origin) {
   out.add("bandwidth", row.bandwidth);
   out.add("bandwidth_share", row.bandwidth_share);
   out.add("thread_speedup", row.thread_speedup);
+  out.add("contact_factor", row.contact_factor > 0.0 ? row.contact_factor : NAN);
   out.add("solve_from_rest_ms", row.accuracy.solve_ms);
   out.add("speedup", row.speedup > 0.0 ? row.speedup : NAN);
   out.add("against", row.against);

@@ -15,8 +15,9 @@ constexpr double kFriction = 0.3;
 // Off the grid's symmetry, m.
 const Eigen::Vector3d kOffset(0.0131, -0.0073, 0.0057);
 
-// Boxes (four contact points) and spheres (one) in columns of two; returns the height that they take up.
-double addResting(int contacts, std::vector<BodyDescription>& bodies) {
+// Boxes (four contact points) and spheres (one) in columns of two, `gap` above the floor and each other; returns the height
+// that they take up.
+double addResting(int contacts, double gap, std::vector<BodyDescription>& bodies) {
   if (contacts == 0) return 0.0;
   const int boxes = contacts / 4;
   const int count = boxes + contacts % 4;
@@ -26,13 +27,13 @@ double addResting(int contacts, std::vector<BodyDescription>& bodies) {
   for (int i = 0; i < count; ++i) {
     const int column = i % columns, level = i / columns;
     const Eigen::Vector3d position((column % along + 0.5) / along, (column / along + 0.5) / along,
-                                   (level + 0.5) * width);
+                                   (level + 0.5) * width + (level + 1) * gap);
     const Eigen::Vector3d aside(kOffset[0], kOffset[1], 0.0);
     const std::string name = "resting_" + std::to_string(i);
     bodies.push_back(i < boxes ? boxBody(name, Eigen::Vector3d::Constant(width), kBodyDensity, position + aside)
                                : sphereBody(name, 0.5 * width, kBodyDensity, position + aside));
   }
-  return (count > columns ? 2.0 : 1.0) * width;
+  return (count > columns ? 2.0 : 1.0) * (width + gap);
 }
 
 void addFree(int count, double low, double high, std::vector<BodyDescription>& bodies) {
@@ -60,7 +61,7 @@ Scene tankScene(const Case& wanted, double tolerance) {
   scene.liquid.density = kDensity;
   scene.liquid.dynamic_viscosity = wanted.viscous_number * kDensity * h * h / kTimeStep;
   scene.liquid.fill_level = wanted.fill >= 1.0 ? scene.tank.size[2] : wanted.fill;
-  const double height = addResting(wanted.contacts, scene.bodies);
+  const double height = addResting(wanted.contacts, wanted.apart ? h : 0.0, scene.bodies);
   addFree(wanted.bodies, height, std::max(wanted.fill, height + 0.3), scene.bodies);
   scene.contact.friction = kFriction;
   scene.solver.name = wanted.solver;

@@ -13,6 +13,7 @@ struct Case {
   int contacts = 0;
   double fill = 1.0;
   SolverName solver = SolverName::kFast;
+  bool apart = false;  // the bodies of the contacts a cell from what they would rest on
 };
 
 // Of the scene; the viscosity is that which the viscous number asks for.
