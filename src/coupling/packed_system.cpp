@@ -13,11 +13,18 @@ namespace {
 constexpr double kStaleIterations = 1.2;
 constexpr double kWorthRenewing = 0.7;
 // So is a viscous number that has changed by this factor. Sub-steps and the order of a step change it by less all the
-// time, which costs fewer iterations than it would to follow.
+// time; until then it is followed as the resistance of a sphere would.
 constexpr double kStaleNumber = 4.0;
 // Fewer decades tell nothing about what one costs.
 constexpr double kLeastDecades = 1.0;
 constexpr double kLeastCost = 1.5;  // iterations a decade, below which none is too many
+
+// By how much a sphere of `radius` cells is harder to move at viscous number `to` than at `from`: added mass, 2/3 pi r^3, and
+// Stokes' drag, 6 pi N r.
+double resistanceRatio(double radius, double from, double to) {
+  const double added = radius * radius / 9.0;
+  return from == to ? 1.0 : (added + to) / (added + from);
+}
 
 }  // namespace
 
@@ -62,7 +69,10 @@ void PackedSystem::updateSchur() {
     fresh_cost_ = lost_ = 0.0;
     stale_ = false;
   }
-  const Eigen::VectorXd inverse = scale_.cwiseInverse();
+  Eigen::VectorXd inverse = scale_.cwiseInverse();
+  for (std::size_t i = 0; i < p.free.size(); ++i) {
+    inverse.segment<6>(6 * i) *= std::sqrt(resistanceRatio(p.radius[i], resistance_number_, p.viscous_number));
+  }
   S_ = inverse.asDiagonal() * resistance_ * inverse.asDiagonal();
   S_ += bodies_ - columns_.ownResistance();
   S_inverse_ = S_.ldlt().solve(Eigen::MatrixXd::Identity(bodySize(), bodySize()));

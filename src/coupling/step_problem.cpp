@@ -46,6 +46,7 @@ void StepProblem::assemble(SolidFractions& solids, const std::vector<RigidBody>&
   free.clear();
   free_index.assign(all_bodies.size(), -1);
   twist_scale.clear();
+  radius.clear();
   inertia.clear();
   solid_inertia.clear();
   for (std::size_t b = 0; b < all_bodies.size(); ++b) {
@@ -62,7 +63,8 @@ void StepProblem::assemble(SolidFractions& solids, const std::vector<RigidBody>&
     // A light body moves with the liquid that it displaces: that is its scale then.
     double displaced = 0.0;
     for (const double part : solids.bodies[b].cell) displaced += part;
-    const double radius2 = std::pow(3.0 * displaced / (4.0 * M_PI), 2.0 / 3.0) * grid.h * grid.h;
+    radius.push_back(std::cbrt(3.0 * displaced / (4.0 * M_PI)));
+    const double radius2 = radius.back() * radius.back() * grid.h * grid.h;
     Vector6d scale;
     for (int d = 0; d < 6; ++d) scale[d] = std::sqrt(M(d, d) + displaced * (d < 3 ? 1.0 : 0.4 * radius2));
     twist_scale.push_back(scale);

@@ -83,6 +83,7 @@ class StepProblem {
   std::vector<int> free;                 // bodies whose twist is unknown
   std::vector<int> free_index;           // body -> place in `free`, or -1
   std::vector<Vector6d> twist_scale;     // of free bodies: sqrt of the inertia that they feel, liquid included
+  std::vector<double> radius;            // of free bodies, cells: of a sphere that displaces as much
   std::vector<Matrix6d> inertia;         // M^ of free bodies with the liquid that sticks to them
   std::vector<Matrix6d> solid_inertia;   // M^ of free bodies by themselves
   std::vector<StickingLiquid> sticking;  // fraction is that of liquid: times W_L
