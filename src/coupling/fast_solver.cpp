@@ -130,7 +130,7 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
     const double closer = given ? std::pow(kTightening, round - kRoundsOnEstimate + 1) : 1.0;
     const bool rough = count > 0 && !given && expected > ContactGuess::settledAt(options.tolerance);
     last = system.solve(m.rhs, m.x, std::max(closer * options.tolerance, kRoundOff) * rhs_norm,
-                        rough ? kRoughPart : 0.0, options, report);
+                        rough ? kRoughPart : 0.0, options, report, count > 0 && round == 0);
     if (!last.converged) {
       // The first guess of what the contacts do may be far off, and then hard to solve for: begin with none that press.
       if (from_open || border.count() == 0) break;

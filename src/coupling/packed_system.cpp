@@ -177,6 +177,10 @@ void PackedSystem::apply(const FaceBlocks<Real>& faces, const CellBlocks<Real>& 
 
 void PackedSystem::precondition(const std::vector<float>& from, std::vector<float>& to) {
   preconditioner_.apply(from.data(), 1.0f / static_cast<float>(flux_weight_), to.data());
+  preconditionBodies(from, to);
+}
+
+void PackedSystem::preconditionBodies(const std::vector<float>& from, std::vector<float>& to) const {
   const Eigen::Index n = bodySize(), k = border_compliance_.size();
   if (n == 0) return;
   const float* r = from.data() + liquidSize();
@@ -196,7 +200,8 @@ void PackedSystem::precondition(const std::vector<float>& from, std::vector<floa
 KrylovMaps PackedSystem::maps() {
   return {[this](auto& from, auto& to) { apply(faces_, cells_, columns_, from, to); },
           [this](auto& from, auto& to) { apply(faces_single_, cells_single_, columns_single_, from, to); },
-          [this](auto& from, auto& to) { precondition(from, to); }};
+          [this](auto& from, auto& to) { precondition(from, to); },
+          [this](const auto& from, auto& to) { preconditionBodies(from, to); }};
 }
 
 Eigen::VectorXd PackedSystem::improvedTwists(const std::vector<double>& rhs, std::vector<double>& x) {
@@ -206,12 +211,12 @@ Eigen::VectorXd PackedSystem::improvedTwists(const std::vector<double>& rhs, std
 }
 
 KrylovReport PackedSystem::solve(const std::vector<double>& rhs, std::vector<double>& x, double goal, double part,
-                                 const CoupledOptions& options, CoupledReport& report) {
+                                 const CoupledOptions& options, CoupledReport& report, bool improved) {
   KrylovOptions k;
   k.absolute_tolerance = goal;
   k.relative_tolerance = part;
   k.maximum_iterations = options.maximum_iterations;
-  const KrylovReport done = krylov_.solve(maps(), rhs, x, k);
+  const KrylovReport done = krylov_.solve(maps(), rhs, x, k, improved);
   report.iterations += done.iterations;
   ++report.solves;
   if (iterations_ == 0 && done.iterations > 0 && done.residual > 0.0) {

@@ -48,9 +48,10 @@ class PackedSystem {
 
   // Twists of x after one cycle of the preconditioner on its residual.
   Eigen::VectorXd improvedTwists(const std::vector<double>& rhs, std::vector<double>& x);
-  // Until the residual is `goal`, or `part` of what it was at first.
+  // Until the residual is `goal`, or `part` of what it was at first. improved: nothing but the border has changed since
+  // improvedTwists().
   KrylovReport solve(const std::vector<double>& rhs, std::vector<double>& x, double goal, double part,
-                     const CoupledOptions& options, CoupledReport& report);
+                     const CoupledOptions& options, CoupledReport& report, bool improved = false);
 
   // S is renewed before it is next used if solves have lost more iterations by its age than renewing it takes...
   void judgeAge();
@@ -64,6 +65,8 @@ class PackedSystem {
   void apply(const FaceBlocks<Real>& faces, const CellBlocks<Real>& cells, const BodyColumns<Real>& columns,
              std::vector<Real>& x, std::vector<Real>& y) const;
   void precondition(const std::vector<float>& from, std::vector<float>& to);
+  // Its second half, for which `to` holds the liquid's.
+  void preconditionBodies(const std::vector<float>& from, std::vector<float>& to) const;
   KrylovMaps maps();
 
   StepProblem* problem_ = nullptr;

@@ -184,7 +184,7 @@ void Fgmres::extend(const KrylovMaps& maps, std::vector<double>& v, std::vector<
 }
 
 template <class Real>
-int Fgmres::cycle(const KrylovMaps& maps, double norm, double goal, int most, Space<Real>& space,
+int Fgmres::cycle(const KrylovMaps& maps, double norm, double goal, int most, bool first_known, Space<Real>& space,
                   std::vector<double>& x) {
   constexpr bool single = std::is_same_v<Real, float>;
   Eigen::MatrixXd hessenberg = Eigen::MatrixXd::Zero(most + 1, most);
@@ -200,7 +200,18 @@ int Fgmres::cycle(const KrylovMaps& maps, double norm, double goal, int most, Sp
   while (used < most && !stop) {
     const int j = used;
     std::vector<Real>& w = space.basisRoom(j + 1, size);
-    extend(maps, space.basis[j], space.directionRoom(j, size), w);
+    std::vector<Real>& z = space.directionRoom(j, size);
+    if constexpr (single) {
+      if (j == 0 && first_known) {
+        scaleInto(z, 1.0 / norm, z);
+        maps.complete(space.basis[0], z);
+        maps.apply_single(z, w);
+      } else {
+        extend(maps, space.basis[j], z, w);
+      }
+    } else {
+      extend(maps, space.basis[j], z, w);
+    }
     // Modified Gram-Schmidt, whose coefficients are h = (I + L)^-1 V^T w with L the strictly lower part of V^T V
     // (Swirydowicz et al. 2021, Numer. Linear Algebra Appl. 28, e2343): it reads the basis twice, not four times.
     Eigen::VectorXd h, row;
@@ -228,7 +239,7 @@ int Fgmres::cycle(const KrylovMaps& maps, double norm, double goal, int most, Sp
 }
 
 KrylovReport Fgmres::solve(const KrylovMaps& maps, const std::vector<double>& b, std::vector<double>& x,
-                           const KrylovOptions& options) {
+                           const KrylovOptions& options, bool first_known) {
   KrylovReport report;
   work_.resize(b.size(), 0.0);
   report.residual = residual(maps, b, x);
@@ -239,6 +250,7 @@ KrylovReport Fgmres::solve(const KrylovMaps& maps, const std::vector<double>& b,
     std::fill(x.begin(), x.end(), 0.0);
     work_ = b;
     report.residual = none;
+    first_known = false;
   }
   report.initial_residual = report.residual;
   const double target = std::max(options.absolute_tolerance, options.relative_tolerance * report.residual);
@@ -248,8 +260,9 @@ KrylovReport Fgmres::solve(const KrylovMaps& maps, const std::vector<double>& b,
     const double wanted = kMargin * target / report.residual;
     const double goal = single ? std::max(wanted, kLeastReduction) : wanted;
     const int most = std::min(options.restart, options.maximum_iterations - report.iterations);
-    const int used = single ? cycle(maps, report.residual, goal, most, single_, x)
-                            : cycle(maps, report.residual, goal, most, double_, x);
+    const int used = single ? cycle(maps, report.residual, goal, most, first_known, single_, x)
+                            : cycle(maps, report.residual, goal, most, false, double_, x);
+    first_known = false;
     report.iterations += used;
     const double last = report.residual;
     report.residual = residual(maps, b, x);

@@ -32,13 +32,16 @@ struct KrylovMaps {
   std::function<void(std::vector<double>& x, std::vector<double>& y)> apply;
   std::function<void(std::vector<float>& x, std::vector<float>& y)> apply_single;
   std::function<void(std::vector<float>& x, std::vector<float>& y)> precondition;
+  // The rest of P^-1 x where y holds what firstDirection() found and solve() is told to go on from; may be missing.
+  std::function<void(const std::vector<float>& x, std::vector<float>& y)> complete;
 };
 
 class Fgmres {
  public:
-  // x holds the initial guess on entry, the solution on return. Work space is kept between calls.
+  // x holds the initial guess on entry, the solution on return. Work space is kept between calls. first_known: the last
+  // call was firstDirection(), and what the maps do not complete() has not changed since.
   [[nodiscard]] KrylovReport solve(const KrylovMaps& maps, const std::vector<double>& b, std::vector<double>& x,
-                                   const KrylovOptions& options);
+                                   const KrylovOptions& options, bool first_known = false);
 
   // P^-1 (b - A x): where a first step would go. Valid until the next call.
   [[nodiscard]] const std::vector<float>& firstDirection(const KrylovMaps& maps, const std::vector<double>& b,
@@ -67,9 +70,11 @@ class Fgmres {
   };
 
   double residual(const KrylovMaps& maps, const std::vector<double>& b, std::vector<double>& x);
-  // One cycle on the residual in work_, until it is `goal` times as large; adds to x. Returns the number of directions.
+  // One cycle on the residual in work_, until it is `goal` times as large; adds to x. first_known: of the first direction only
+  // a rest is missing. Returns the number of directions.
   template <class Real>
-  int cycle(const KrylovMaps& maps, double norm, double goal, int most, Space<Real>& space, std::vector<double>& x);
+  int cycle(const KrylovMaps& maps, double norm, double goal, int most, bool first_known, Space<Real>& space,
+            std::vector<double>& x);
   void extend(const KrylovMaps& maps, std::vector<float>& v, std::vector<float>& z, std::vector<float>& w);
   void extend(const KrylovMaps& maps, std::vector<double>& v, std::vector<double>& z, std::vector<double>& w);
 

@@ -76,6 +76,34 @@ TEST_F(FgmresTest, AnExactPreconditionerNeedsOneIterationForEachCycleOfSinglePre
   EXPECT_LE(report.iterations, 4);
 }
 
+TEST_F(FgmresTest, GoesOnFromAKnownFirstDirection) {
+  KrylovOptions options;
+  options.absolute_tolerance = 1e-8;
+  options.maximum_iterations = 500;
+  options.restart = 130;
+  std::vector<double> x(rhs.size(), 0.3), same = x;
+  const KrylovReport report = Fgmres().solve(maps(), rhs, x, options);
+  // Of the first direction all but the last ten entries are told; how often the whole of it is asked for counts.
+  KrylovMaps partly = maps();
+  int asked = 0;
+  partly.precondition = [&asked, whole = partly.precondition](auto& from, auto& to) {
+    ++asked;
+    whole(from, to);
+  };
+  partly.complete = [](const std::vector<float>& from, std::vector<float>& to) {
+    std::copy(from.end() - 10, from.end(), to.end() - 10);
+  };
+  Fgmres krylov;
+  std::vector<double> other = rhs;  // changes at the end only
+  for (std::size_t i = other.size() - 10; i < other.size(); ++i) other[i] += 5.0;
+  (void)krylov.firstDirection(partly, other, same);
+  const KrylovReport going_on = krylov.solve(partly, rhs, same, options, true);
+  EXPECT_TRUE(going_on.converged);
+  EXPECT_NEAR(going_on.iterations, report.iterations, 2);
+  EXPECT_EQ(asked, going_on.iterations);
+  EXPECT_LE(residual(same), 1e-8);
+}
+
 TEST_F(FgmresTest, StaysOrthogonalInSinglePrecision) {
   // Unrestarted, an iteration for each dimension is enough for a reduction that one cycle may reach; a basis that has
   // lost its orthogonality stagnates.
