@@ -81,7 +81,7 @@ TEST_F(FgmresTest, GoesOnFromAKnownFirstDirection) {
   options.absolute_tolerance = 1e-8;
   options.maximum_iterations = 500;
   options.restart = 130;
-  std::vector<double> x(rhs.size(), 0.3), same = x;
+  std::vector<double> x(rhs.size(), 0.003), same = x;
   const KrylovReport report = Fgmres().solve(maps(), rhs, x, options);
   // Of the first direction all but the last ten entries are told; how often the whole of it is asked for counts.
   KrylovMaps partly = maps();
