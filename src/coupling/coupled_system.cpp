@@ -41,22 +41,42 @@ struct CoupledSystem::Impl {
 
   // Velocities and pressures of a state where they are unknowns; all twists.
   void load(const CoupledState& state) {
+    x.velocity = state.velocity;
+    x.pressure = state.pressure;
+    x.bodies = state.twists;
+    clearOthers();
+  }
+  // The same without a copy: the state's fields are empty until giveBack().
+  void take(CoupledState& state) {
+    x.velocity = std::move(state.velocity);
+    x.pressure = std::move(state.pressure);
+    x.bodies = state.twists;
+    clearOthers();
+  }
+  void giveBack(CoupledState& state) {
+    problem.toVelocities(x.velocity);
+#pragma omp parallel for simd schedule(static)
+    for (std::size_t i = 0; i < x.pressure.size(); ++i) x.pressure[i] *= problem.pressure_scale;
+    state.velocity = std::move(x.velocity);
+    state.pressure = std::move(x.pressure);
+  }
+
+ private:
+  void clearOthers() {
     const Lattice& l = problem.grid.lattice;
-    x.resize(l, problem.bodies->size());
     for (int a = 0; a < 3; ++a) {
 #pragma omp parallel for schedule(static)
       for (std::size_t i = 0; i < l.size; ++i) {
-        x.velocity[a][i] = problem.coefficients.mass[a][i] > 0.0 ? state.velocity[a][i] : 0.0;
+        if (!(problem.coefficients.mass[a][i] > 0.0)) x.velocity[a][i] = 0.0;
       }
       clearHalo(l, x.velocity[a]);
     }
     problem.toUnknowns(x.velocity);
 #pragma omp parallel for schedule(static)
     for (std::size_t i = 0; i < l.size; ++i) {
-      x.pressure[i] = problem.coefficients.has_pressure[i] ? state.pressure[i] / problem.pressure_scale : 0.0;
+      x.pressure[i] = problem.coefficients.has_pressure[i] ? x.pressure[i] / problem.pressure_scale : 0.0;
     }
     clearHalo(l, x.pressure);
-    x.bodies = state.twists;
   }
 };
 
@@ -133,7 +153,6 @@ CoupledReport CoupledSystem::solve(const FaceField<double>& free_velocity, const
                                    CoupledState& state) {
   Impl& m = *impl_;
   const StepProblem& p = m.problem;
-  const Lattice& l = p.grid.lattice;
   CoupledReport report;
   report.message = p.rightSide(free_velocity, free_twists, gravity, m.rhs);
   if (!report.message.empty()) {
@@ -142,7 +161,7 @@ CoupledReport CoupledSystem::solve(const FaceField<double>& free_velocity, const
   }
 
   // Initial guess.
-  m.load(state);
+  m.take(state);
   for (std::size_t b = 0; b < p.bodies->size(); ++b) {
     if (p.free_index[b] < 0) m.x.bodies[b] = free_twists[b];
   }
@@ -153,14 +172,13 @@ CoupledReport CoupledSystem::solve(const FaceField<double>& free_velocity, const
   report = contacts.empty()                             ? m.solver->solve(m.rhs, options, m.x)
            : m.coupling == CouplingName::kIterative ? solveIteratively(*m.solver, p, m.rhs, rows, options, m.x, r)
                                                     : m.solver->solveWithContacts(m.rhs, rows, options, m.x, r);
-  if (report.status != CoupledReport::Status::kConverged) return report;
-
-  state.velocity = m.x.velocity;
-  p.toVelocities(state.velocity);
-#pragma omp parallel for simd schedule(static)
-  for (std::size_t i = 0; i < l.size; ++i) state.pressure[i] = m.x.pressure[i] * p.pressure_scale;
-  state.twists = m.x.bodies;
-  p.results(m.x, gravity, state.liquid, report.divergence);
+  const bool converged = report.status == CoupledReport::Status::kConverged;
+  if (converged) {
+    state.twists = m.x.bodies;
+    p.results(m.x, gravity, state.liquid, report.divergence);
+  }
+  m.giveBack(state);
+  if (!converged) return report;
   distributeImpulses(p, rows, contacts, r, state.impulses, state.contact);
   return report;
 }

@@ -28,7 +28,7 @@ constexpr double kProximity = 1e-4 / kContactCompliance;  // times its complianc
 struct FastSolver::Impl {
   StepProblem* problem = nullptr;
   PackedSystem system;
-  std::vector<double> rhs, x, guess;  // kept for their memory
+  std::vector<double> rhs, x;  // kept for their memory
   double first_change = 0.0;  // of the contacts after the last step's first round, relative; 0 if that was enough
 
   // Response of the twists of the bodies in contact to unit impulses, by one liquid solve each; false if one fails.
@@ -102,7 +102,6 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
 
   ContactGuess guess(contacts, r, options.tolerance);
   if (count > 0) {
-    m.guess = m.x;
     guess.setResponse(system.estimatedResponse());
     // One cycle on the whole residual says roughly how the bodies would move without contact.
     system.setBorder(makeBorder(contacts, openStates(contacts)), guess.compliance(), kProximity);
@@ -135,7 +134,7 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
       // The first guess of what the contacts do may be far off, and then hard to solve for: begin with none that press.
       if (from_open || border.count() == 0) break;
       from_open = true;
-      m.x = m.guess;
+      system.packMotion(x_fields, m.x);
       guess.setOpen();
       continue;
     }

@@ -6,6 +6,7 @@
 
 #include "coupling/fraction_coefficients.h"
 #include "coupling/row_kinds.h"
+#include "solve/assign_zero.h"
 #include "solve/velocity_multigrid.h"
 
 namespace monolith {
@@ -170,7 +171,7 @@ std::string StepProblem::rightSide(const FaceField<double>& free_velocity, const
                                    const Eigen::Vector3d& gravity, StepVector& rhs) const {
   const Lattice& l = grid.lattice;
   rhs.resize(l, bodies->size());
-  rhs.setZero();
+  for (auto& force : rhs.bodies) force.setZero();
   // What the prescribed motions do.
   std::vector<int> moved;
   for (std::size_t b = 0; b < bodies->size(); ++b) {
@@ -188,13 +189,17 @@ std::string StepProblem::rightSide(const FaceField<double>& free_velocity, const
     clearHalo(l, rhs.pressure);
     for (double& r : rhs.pressure) r = -r;
     for (auto& force : rhs.bodies) force = -force;
+  } else {
+    for (auto& field : rhs.velocity) assignZero(l.size, field);
+    assignZero(l.size, rhs.pressure);
   }
-  FaceField<double> wanted = free_velocity;
-  toUnknowns(wanted);
   for (int a = 0; a < 3; ++a) {
-    clearHalo(l, wanted[a]);
+    const double *mass = coefficients.mass[a].data(), *wanted = free_velocity[a].data();
+    const double* share = flux_share[a].empty() ? nullptr : flux_share[a].data();
+    double* out = rhs.velocity[a].data();
 #pragma omp parallel for simd schedule(static)
-    for (std::size_t i = 0; i < l.size; ++i) rhs.velocity[a][i] += coefficients.mass[a][i] * wanted[a][i];
+    for (std::size_t i = 0; i < l.size; ++i) out[i] += mass[i] * (share == nullptr ? wanted[i] : share[i] * wanted[i]);
+    clearHalo(l, rhs.velocity[a]);
   }
   for (std::size_t i = 0; i < free.size(); ++i) rhs.bodies[free[i]] += solid_inertia[i] * free_twists[free[i]];
   for (const StickingLiquid& s : sticking) {

@@ -92,10 +92,9 @@ struct Simulation::Impl {
   MacGrid grid;
   TankWalls walls;
   SolidSampler sampler;
-  SolidFractions solids;       // at the bodies' present poses, sticking liquid not yet attached; but see `predicted`
-  bool predicted = false;      // second order: of `solids` only what cells have, of the poses that were solved with
-  BodyPlan plan;               // of the last solve
-  SolidFractions step_solids;  // as the last solve used them
+  SolidFractions solids;  // at the bodies' present poses, from a solve on with the liquid that sticks to them
+  bool predicted = false;  // second order: `solids` are at the poses that were solved with
+  BodyPlan plan;           // of the last solve
   std::vector<FreeSurface> step_surface;
   FaceField<double> carried;  // velocity that the liquid at each face had at the start of the step
   // Within a sub-step only, kept for their memory.

@@ -46,13 +46,12 @@ void Simulation::Impl::prepareSolve(const StepWeights& w) {
   if (w.order == 1) {
     if (predicted) prepareGeometry();
     step_surface = state.surface;
-    step_solids = solids;
     return;
   }
   step_surface = state.surface;
-  sampler.sample(plan.bodies, step_solids);
+  sampler.sample(plan.bodies, solids);
   step_surface[0].advect(state.coupled.velocity, w.dt, state.liquid_speed);
-  step_surface[0].extendIntoSolids(step_solids.cell_distance);
+  step_surface[0].extendIntoSolids(solids.cell_distance);
 }
 
 void Simulation::Impl::advectLiquid(const StepWeights& w, FaceField<double>& free_velocity, FaceField<double>& gained) {
@@ -104,9 +103,9 @@ CoupledReport Simulation::Impl::solveWithLiquid(const StepWeights& w, const std:
     prepareSolve(w);
     const auto& distance = step_surface[0].distance();
     if (nonNewtonian()) {
-      system.assembleVariable(step_solids, plan.bodies, distance, liquid.density, state.typical_viscosity, w.implicit);
+      system.assembleVariable(solids, plan.bodies, distance, liquid.density, state.typical_viscosity, w.implicit);
     } else {
-      system.assemble(step_solids, plan.bodies, distance, liquid.density, liquid.dynamic_viscosity, w.implicit);
+      system.assemble(solids, plan.bodies, distance, liquid.density, liquid.dynamic_viscosity, w.implicit);
     }
   }
   const StageClock clock(step.times.solve);
@@ -159,7 +158,7 @@ void Simulation::Impl::moveLiquid(const StepWeights& w, StepReport& step) {
   for (std::size_t b = 0; b < moving.size(); ++b) moving[b].twist = state.coupled.twists[b];
   auto& known_before = scratch.known_before;
   known_before = state.known;
-  completeVelocity(grid, system.problem(), step_solids, moving, layers, noSlip(), nullptr, state.coupled.velocity,
+  completeVelocity(grid, system.problem(), solids, moving, layers, noSlip(), nullptr, state.coupled.velocity,
                    state.known);
   if (secondOrder()) {
     for (std::size_t b = 0; b < moving.size(); ++b) moving[b].twist = state.body_acceleration[b];
@@ -171,7 +170,7 @@ void Simulation::Impl::moveLiquid(const StepWeights& w, StepReport& step) {
         acceleration[a][i] = (state.coupled.velocity[a][i] - carried[a][i]) / w.dt;
       }
     }
-    completeVelocity(grid, system.problem(), step_solids, moving, layers, noSlip(), &known_before, acceleration,
+    completeVelocity(grid, system.problem(), solids, moving, layers, noSlip(), &known_before, acceleration,
                      scratch.known);
   }
   if (w.order == 2) {
@@ -184,8 +183,6 @@ void Simulation::Impl::moveLiquid(const StepWeights& w, StepReport& step) {
     }
     state.surface[0].advect(mean, w.dt, std::max(step.maximum_speed, state.liquid_speed));
     // The poses of the solve are those of now but for dt^2/2 times the acceleration.
-    solids.cell_distance = step_solids.cell_distance;
-    solids.cell_fluid = step_solids.cell_fluid;
     state.surface[0].extendIntoSolids(solids.cell_distance);
     predicted = true;
   } else {
