@@ -145,10 +145,6 @@ void StepProblem::toVelocities(FaceField<double>& unknowns) const {
   }
 }
 
-bool StepProblem::isResolved(int axis, std::ptrdiff_t face) const {
-  return resolved_[axis].empty() ? coefficients.mass[axis][face] > 0.0 : resolved_[axis][face] != 0;
-}
-
 FaceField<double> StepProblem::liquidMass() const {
   // mass U^2 = (W_F W_L) u^2
   FaceField<double> mass = coefficients.mass;

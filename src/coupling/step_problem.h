@@ -55,7 +55,9 @@ class StepProblem {
   void toVelocities(FaceField<double>& unknowns) const;
   // Whether U of a face tells how fast the liquid there is: such velocities are advected and move the surface; other
   // faces take theirs from around (see fraction_coefficients.h; `fitted`: every face with an unknown).
-  bool isResolved(int axis, std::ptrdiff_t face) const;
+  bool isResolved(int axis, std::ptrdiff_t face) const {
+    return resolved_[axis].empty() ? coefficients.mass[axis][face] > 0.0 : resolved_[axis][face] != 0;
+  }
   // Liquid in a face's control volume: (rho h^3) liquidMass() u is its momentum.
   FaceField<double> liquidMass() const;
 

@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "fluid/interpolation.h"
+#include "fluid/next_to_known.h"
 #include "fluid/row_advection.h"
+#include "solve/assign_zero.h"
 
 namespace monolith {
 namespace {
@@ -114,7 +116,7 @@ template <std::size_t count, class One, class FourFunction>
 void advectFaces(const Lattice& l, int axis, const std::vector<std::uint8_t>& known, One&& one, FourFunction&& four,
                  const std::array<const std::vector<double>*, count>& from,
                  const std::array<std::vector<double>*, count>& to) {
-  for (auto* field : to) field->assign(l.size, 0.0);
+  for (auto* field : to) assignZero(l.size, *field);
   forEachRowInTurn(l.faceEnd(1), l.faceEnd(2), [&](int j, int k) {
     const auto row = l.index(0, j, k);
     const std::uint8_t* mask = known.data() + row;
@@ -157,22 +159,12 @@ Eigen::Vector3d velocityAt(const Lattice& l, const FaceField<double>& velocity, 
 
 void extrapolateVelocity(const Lattice& l, int layers, bool no_slip, std::array<std::vector<std::uint8_t>, 3>& known,
                          FaceField<double>& velocity) {
-  // One list of unknown faces for each plane of faces, so that threads do not meet.
-  std::vector<std::vector<std::ptrdiff_t>> missing(l.faceEnd(2)), found(l.faceEnd(2));
+  // One list for each plane of faces, so that threads do not meet.
+  std::vector<std::vector<std::ptrdiff_t>> found(l.faceEnd(2));
   for (int a = 0; a < 3; ++a) {
     std::vector<double>& u = velocity[a];
     std::vector<std::uint8_t>& mask = known[a];
     const int planes = l.faceEnd(2);
-#pragma omp parallel for schedule(static, kPlanesInTurn)
-    for (int k = 0; k < planes; ++k) {
-      missing[k].clear();
-      for (int j = 0; j < l.faceEnd(1); ++j) {
-        const auto row = l.index(0, j, k);
-        for (auto f = row; f < row + l.faceEnd(0); ++f) {
-          if (!mask[f]) missing[k].push_back(f);
-        }
-      }
-    }
     for (int layer = 0; layer < layers; ++layer) {
       fillHalo(l, u);
       fillHalo(l, mask);
@@ -180,8 +172,7 @@ void extrapolateVelocity(const Lattice& l, int layers, bool no_slip, std::array<
 #pragma omp parallel for schedule(static, kPlanesInTurn)
       for (int k = 0; k < planes; ++k) {
         found[k].clear();
-        std::size_t left = 0;
-        for (const auto f : missing[k]) {
+        forEachNextToKnown(l, k, mask.data(), [&](std::ptrdiff_t f, const std::array<int, 3>&) {
           double sum = 0.0;
           int count = 0;
           for (int b = 0; b < 3; ++b) {
@@ -191,14 +182,9 @@ void extrapolateVelocity(const Lattice& l, int layers, bool no_slip, std::array<
               ++count;
             }
           }
-          if (count == 0) {
-            missing[k][left++] = f;
-            continue;
-          }
           u[f] = sum / count;
           found[k].push_back(f);
-        }
-        missing[k].resize(left);
+        });
       }
       bool any = false;
       for (int k = 0; k < planes; ++k) {

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "fluid/advection.h"
+#include "fluid/next_to_known.h"
 
 namespace monolith {
 namespace {
@@ -20,17 +21,15 @@ void continueIntoAir(const Lattice& l, const SolidFractions& solids, FaceField<d
     fillHalo(l, u);
     fillHalo(l, known[a]);
     const std::vector<std::uint8_t> before = known[a];
-    forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
-      const int at[3] = {0, j, k};
-      for (int i = 0; i < l.faceEnd(0); ++i) {
-        const auto f = row + i;
-        if (before[f] || !(solids.distance[a][f] > 0.0 && solids.fluid[a][f] > 0.0)) continue;
+#pragma omp parallel for schedule(static, kPlanesInTurn)
+    for (int k = 0; k < l.faceEnd(2); ++k) {
+      forEachNextToKnown(l, k, before.data(), [&](std::ptrdiff_t f, const std::array<int, 3>& at) {
+        if (!(solids.distance[a][f] > 0.0 && solids.fluid[a][f] > 0.0)) return;
         double sum = 0.0;
         int count = 0;
         for (int b = 0; b < 3; ++b) {
-          const int position = b == 0 ? i : at[b];
           for (const int step : {-1, 1}) {
-            const int last = position + 2 * step;
+            const int last = at[b] + 2 * step;
             const bool inside = last >= 0 && last < (b == a ? l.faceEnd(b) : l.n[b]);
             if (!inside && !l.periodic[b]) continue;
             const auto near = f + step * l.stride[b];
@@ -40,11 +39,11 @@ void continueIntoAir(const Lattice& l, const SolidFractions& solids, FaceField<d
             ++count;
           }
         }
-        if (count == 0) continue;
+        if (count == 0) return;
         u[f] = sum / count;
         known[a][f] = 1;
-      }
-    });
+      });
+    }
   }
 }
 
