@@ -54,12 +54,13 @@ void forEachWallDistance(const Lattice& l, const Eigen::Vector3d& offset, Functi
   }
 }
 
-// f(i, j, k, g) for every place of a body's box; g: its face on the grid, or -1.
+// f(i, j, k, g) for every place of a body's box that the body takes a part of; g: its face on the grid, or -1.
 template <class Function>
 void forEachFace(const Lattice& l, const BodyFractions& box, int axis, Function&& f) {
   for (int k = 0; k < box.count[2]; ++k) {
     for (int j = 0; j < box.count[1]; ++j) {
       for (int i = 0; i < box.count[0]; ++i) {
+        if (box.face[axis][box.local(i, j, k)] == 0.0) continue;
         f(i, j, k, gridIndex(l, {box.low[0] + i, box.low[1] + j, box.low[2] + k}, axis));
       }
     }
@@ -251,7 +252,6 @@ void SolidSampler::close(SolidFractions& out) const {
     for (int a = 0; a < 3; ++a) {
       forEachFace(l, f, a, [&](int i, int j, int k, std::ptrdiff_t g) {
         double& fraction = f.face[a][f.local(i, j, k)];
-        if (fraction == 0.0) return;
         const std::array<int, 3> at = {f.low[0] + i, f.low[1] + j, f.low[2] + k};
         if (g < 0 || isWallFace(l, a, at[a])) {
           if (g >= 0) {

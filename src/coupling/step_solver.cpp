@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solve/blocked_sum.h"
+
 namespace monolith {
 
 void addCompliance(const ContactRows& contacts, Eigen::MatrixXd& response, Eigen::VectorXd& compliance) {
@@ -38,10 +40,8 @@ void scatterBodies(const StepProblem& problem, const Eigen::VectorXd& free, std:
 
 double stepNorm(const StepProblem& problem, const StepVector& r) {
   double sum = 0.0;
-  for (const auto& field : r.velocity) {
-    for (const double v : field) sum += v * v;
-  }
-  for (const double v : r.pressure) sum += v * v;
+  for (const auto& field : r.velocity) sum += dot(field, field);
+  sum += dot(r.pressure, r.pressure);
   for (std::size_t i = 0; i < problem.free.size(); ++i) {
     sum += r.bodies[problem.free[i]].cwiseQuotient(problem.twist_scale[i]).squaredNorm();
   }

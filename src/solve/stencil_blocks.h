@@ -81,6 +81,20 @@ class StencilBlocks {
     std::int32_t component, begin, end;
   };
   static constexpr std::size_t kSize = Count * kLanes;
+  // Some of a pattern's words tell most patterns apart; which are the same is seen from all of them.
+  struct PatternHash {
+    std::size_t operator()(std::string_view text) const {
+      constexpr std::size_t kStride = 7 * sizeof(std::uint64_t);
+      std::uint64_t sum = 0;
+      for (std::size_t at = 0; at + sizeof(std::uint64_t) <= text.size(); at += kStride) {
+        std::uint64_t word;
+        std::memcpy(&word, text.data() + at, sizeof(word));
+        sum = (sum ^ word) * 0x9E3779B97F4A7C15u;
+        sum ^= sum >> 29;
+      }
+      return sum;
+    }
+  };
 
   template <class BlockFunction>
   void run(std::ptrdiff_t begin, std::ptrdiff_t end, BlockFunction&& f) const {
@@ -178,7 +192,7 @@ void StencilBlocks<Real, Count>::build(const Lattice& l, const std::vector<int>&
   segments_.clear();
   values_.clear();
   row_begin_.assign(1, 0);
-  std::unordered_map<std::string_view, std::int32_t> known;
+  std::unordered_map<std::string_view, std::int32_t, PatternHash> known;
   std::vector<std::int32_t> number, renumbered(keeps ? last_patterns : 0, -1);
   const auto text = [](const Real* values) {
     return std::string_view(reinterpret_cast<const char*>(values), kSize * sizeof(Real));
