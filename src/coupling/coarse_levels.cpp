@@ -3,7 +3,7 @@
 namespace monolith {
 namespace {
 
-constexpr double kSmallMove = 0.1;  // of a cell of the finest level
+constexpr double kSmallMove = 0.5;  // of a cell of the finest level
 
 }  // namespace
 

@@ -14,7 +14,7 @@ constexpr double kLargestProjected = 20.0;
 constexpr int kSmootherDegree = 2;
 constexpr int kViscousSmootherDegree = 4;
 
-float removeMean(const std::vector<std::ptrdiff_t>& cells, float* field) {
+float removeMean(const std::vector<std::int32_t>& cells, float* field) {
   const auto size = static_cast<std::ptrdiff_t>(cells.size());
   const double sum = blockedSum<double>(size, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     double part = 0.0;
