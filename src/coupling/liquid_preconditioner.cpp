@@ -54,8 +54,9 @@ void LiquidPreconditioner::set(const StepProblem& problem, const FaceBlocks<floa
                   projects() ? kSmootherDegree : kViscousSmootherDegree);
   }
   pressure_.set(l, problem.coefficients.has_pressure, conductance, &problem.steady);
-  assignZero(l.size, g_);
-  assignZero(l.size, weight_);
+  cells.clear(0, build_, g_);
+  build_ = cells.build();
+  if (!problem.coefficients.viscous || weight_.size() != l.size) assignZero(l.size, weight_);
   if (!problem.coefficients.viscous) return;
   const auto& normal = problem.coefficients.normal;
   forEachRow(l, [&](std::ptrdiff_t row, int, int) {

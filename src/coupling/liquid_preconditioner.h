@@ -42,6 +42,7 @@ class LiquidPreconditioner {
   VelocityMultigrid velocity_;
   PressureMultigrid pressure_;
   std::vector<float> g_, weight_;
+  long build_ = -1;  // of the cells' blocks, that g_ has followed
 };
 
 }  // namespace monolith

@@ -31,9 +31,18 @@ double resistanceRatio(double radius, double from, double to) {
 void PackedSystem::set(StepProblem& problem) {
   problem_ = &problem;
   const StepProblem& p = problem;
-  krylov_.forget();
+  const long last_faces = faces_.build(), last_cells = cells_.build();
   buildFaceBlocks(p.coefficients, faces_, &transfer_, &conductance_, &p.steady);
   buildCellBlocks(p.coefficients, cells_, &p.steady);
+  if (faces_.follows(last_faces) && cells_.follows(last_cells)) {
+    std::vector<std::ptrdiff_t> lost;
+    const auto size = static_cast<std::ptrdiff_t>(lattice().size);
+    for (const auto& block : faces_.lost()) lost.push_back(block.component * size + block.place);
+    for (const auto& block : cells_.lost()) lost.push_back(3 * size + block.place);
+    krylov_.lose(lost, kLanes);
+  } else {
+    krylov_.forget();
+  }
   faces_single_ = faces_.converted<float>();
   cells_single_ = cells_.converted<float>();
   flux_weight_ = std::max(1.0, 2.0 * p.viscous_number);

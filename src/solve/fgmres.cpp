@@ -145,6 +145,21 @@ void Fgmres::forget() {
   z_single_.clear();
 }
 
+void Fgmres::lose(const std::vector<std::ptrdiff_t>& begins, int length) {
+  const auto clear = [&](auto& vector) {
+    if (vector.empty()) return;
+    for (const auto begin : begins) std::fill_n(vector.begin() + begin, length, 0);
+  };
+  const auto clearAll = [&](auto& space) {
+    for (std::size_t i = 0; i < space.clean_basis; ++i) clear(space.basis[i]);
+    for (std::size_t i = 0; i < space.clean_directions; ++i) clear(space.directions[i]);
+  };
+  clearAll(single_);
+  clearAll(double_);
+  clear(work_);
+  clear(z_single_);
+}
+
 const std::vector<float>& Fgmres::firstDirection(const KrylovMaps& maps, const std::vector<double>& b,
                                                  std::vector<double>& x) {
   work_.resize(b.size(), 0.0);

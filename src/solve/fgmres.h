@@ -47,8 +47,10 @@ class Fgmres {
   [[nodiscard]] const std::vector<float>& firstDirection(const KrylovMaps& maps, const std::vector<double>& b,
                                                          std::vector<double>& x);
 
-  // The unknowns may be others from now on than those of the solves before.
+  // The unknowns may be others from now on than those of the solves before...
   void forget();
+  // ... or lack only those of `length` entries from each of these on.
+  void lose(const std::vector<std::ptrdiff_t>& begins, int length);
 
   std::size_t bytes() const;
 

@@ -128,7 +128,6 @@ void PressureMultigrid::coarsen(const Lattice& from, const Network& fine, const 
 
 void PressureMultigrid::finish(const Network& network, const SteadyRows* steady, Level& level) const {
   const Lattice& l = level.lattice;
-  for (auto* field : {&level.x, &level.next, &level.d}) assignZero(l.size, *field);
   if (!level.blocks.wouldKeep(steady)) assignZero(l.size, level.mask);
   if (&level != &levels_[0]) assignZero(l.size, level.b);
   level.blocks.build(l, {0}, [&](int, std::ptrdiff_t row, int width, auto& k) {
@@ -149,6 +148,10 @@ void PressureMultigrid::finish(const Network& network, const SteadyRows* steady,
     }
     return true;
   }, steady);
+  // Cells of coarse levels that are continued into hold something, too.
+  if (&level != &levels_[0]) level.build = -1;
+  for (auto* field : {&level.x, &level.next, &level.d}) level.blocks.clear(0, level.build, *field);
+  level.build = level.blocks.build();
   // L is an M-matrix: the spectrum of D^-1 L lies in [0, 2].
   level.range.largest = 2.0f;
   level.range.ratio = kRatio;

@@ -47,6 +47,7 @@ class PressureMultigrid {
     std::vector<Extension> extension;
     const float* right = nullptr;
     ChebyshevRange range;
+    long build = -1;  // of the blocks, that the fields have followed
   };
   // What coarsening needs of a level.
   struct Network {

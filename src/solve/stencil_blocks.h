@@ -16,6 +16,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "solve/assign_zero.h"
 #include "solve/lattice.h"
 #include "solve/steady_rows.h"
 
@@ -35,6 +36,27 @@ class StencilBlocks {
   // It is not called for rows that are steady since the last build, if that was of the generation before.
   template <class FillRow>
   void build(const Lattice& l, const std::vector<int>& first, FillRow&& fill, const SteadyRows* steady = nullptr);
+
+  // What is written for blocks is zero elsewhere only if it was before. A field that has followed every build needs zeros
+  // just in the blocks that each of them lost: clears those of a component, or, if the field has not (`build`: the last one
+  // that it has followed), all of it; `build` is the present one then.
+  template <class Value>
+  void clear(int component, long build, std::vector<Value>& field) const {
+    if (!follows(build) || field.size() != lattice_.size) {
+      assignZero(lattice_.size, field);
+      return;
+    }
+    for (const Lost& lost : lost_) {
+      if (lost.component == component) std::fill_n(field.begin() + lost.place, kLanes, Value(0));
+    }
+  }
+  // Whether the blocks are those of `build` but for lost() and new ones.
+  bool follows(long build) const { return !anew_ && build + 1 == build_; }
+  long build() const { return build_; }
+  struct Lost {
+    std::int32_t component, place;
+  };
+  const std::vector<Lost>& lost() const { return lost_; }
 
   // Whether a build with these would leave steady rows as they are.
   bool wouldKeep(const SteadyRows* steady) const { return steady != nullptr && steady->isSuccessor(generation_); }
@@ -67,6 +89,10 @@ class StencilBlocks {
     out.segments_.resize(segments_.size());
     std::memcpy(out.segments_.data(), segments_.data(), segments_.size() * sizeof(Segment));
     out.values_.assign(values_.begin(), values_.end());
+    out.lattice_ = lattice_;
+    out.anew_ = anew_;
+    out.build_ = build_;
+    for (const Lost& lost : lost_) out.lost_.push_back({lost.component, lost.place});
     return out;
   }
 
@@ -112,6 +138,10 @@ class StencilBlocks {
   std::vector<Real> values_;
   std::vector<std::int32_t> row_begin_;  // in blocks_, of every row; one more at the end
   long generation_ = -2;                 // of the steady rows that it was built with
+  Lattice lattice_;
+  bool anew_ = true;  // the last build was the first on its lattice
+  long build_ = 0;
+  std::vector<Lost> lost_;  // blocks that the build before had
 };
 
 template <class Real, int Count>
@@ -128,6 +158,10 @@ void StencilBlocks<Real, Count>::build(const Lattice& l, const std::vector<int>&
   const int row_blocks = (l.n[0] + kLanes - 1) / kLanes;
   const int rows = l.faceEnd(1);
   std::vector<Plane> planes(l.faceEnd(2));
+  anew_ = build_ == 0 || lattice_.n != l.n || lattice_.periodic != l.periodic;
+  lattice_ = l;
+  ++build_;
+  lost_.clear();
   const bool keeps = wouldKeep(steady) && row_begin_.size() == planes.size() * components * rows + 1;
   const std::vector<Block> last_blocks = std::move(blocks_);
   const std::vector<Real> last_values = std::move(values_);
@@ -217,6 +251,17 @@ void StencilBlocks<Real, Count>::build(const Lattice& l, const std::vector<int>&
       for (int j = 0; j < rows; ++j) row_begin_.push_back(begin + plane.row_ends[component * rows + j]);
       const auto end = static_cast<std::int32_t>(blocks_.size());
       if (end > begin) segments_.push_back({component, begin, end});
+    }
+  }
+  if (anew_) return;
+  // Both in the same order: by rows, and along them.
+  const std::size_t all = row_begin_.size() - 1;
+  for (std::size_t at = 0; at < all; ++at) {
+    auto now = row_begin_[at];
+    for (auto b = last_begin[at]; b < last_begin[at + 1]; ++b) {
+      while (now < row_begin_[at + 1] && blocks_[now].place < last_blocks[b].place) ++now;
+      if (now < row_begin_[at + 1] && blocks_[now].place == last_blocks[b].place) continue;
+      lost_.push_back({static_cast<std::int32_t>(at / rows % components), last_blocks[b].place});
     }
   }
 }

@@ -31,12 +31,11 @@ void VelocityMultigrid::set(const Lattice& lattice, const FaceBlocks<float>& fin
     level.lattice = i == 0 ? lattice : coarse[i].lattice;
     if (i > 0) buildFaceBlocks(coarse[i], level.own, &level.own_transfer, nullptr);
     // Zero where nothing is written: other faces than last time may have an unknown now.
-    for (auto* fields : {&level.x, &level.next, &level.d}) {
-      for (auto& field : *fields) assignZero(level.lattice.size, field);
+    for (int a = 0; a < 3; ++a) {
+      for (auto* fields : {&level.x, &level.next, &level.d}) level.blocks->clear(a, level.build, (*fields)[a]);
+      if (i > 0) assignZero(level.lattice.size, level.b[a]);
     }
-    if (i > 0) {
-      for (auto& field : level.b) assignZero(level.lattice.size, field);
-    }
+    level.build = level.blocks->build();
   }
 }
 

@@ -38,6 +38,7 @@ class VelocityMultigrid {
     ChebyshevRange range;
     Faces<const float> right{};
     long generation = -1;  // of a coarse level
+    long build = -1;       // of the finest level's blocks, that its fields have followed
   };
 
   void smooth(Level& level, int degree, bool from_zero);

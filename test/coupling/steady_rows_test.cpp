@@ -146,6 +146,35 @@ TEST(SteadyRows, KeepWhatWouldBeBuiltAnew) {
   }
 }
 
+// A field that has followed every build holds something in the blocks there are, and nowhere else.
+TEST(StencilBlocks, ClearsWhatItHasLost) {
+  MacGrid grid;
+  grid.lattice = Lattice({20, 12, 14}, {false, false, false});
+  grid.h = 0.05;
+  Built built(grid, 0.0);
+  FaceField<float> field;
+  long build = -1;
+  int lost = 0;
+  const std::vector<Moment> moments = {{{0.3, 0.3, 0.3}, 9.3, 0.0, 1.0},    {{0.3, 0.3, 0.3}, 7.3, 0.1, 1.0},
+                                       {{0.7, 0.3, 0.3}, 7.3, -0.1, 1.0},   {{0.7, 0.3, 0.3}, 100.0, 0.0, 1.0},
+                                       {{0.7, 0.3, 0.25}, 100.0, 0.0, 1.0}, {{0.7, 0.3, 0.25}, 3.4, 0.0, 0.0},
+                                       {{0.2, 0.3, 0.25}, 5.4, 0.0, 0.0}};
+  for (std::size_t i = 0; i < moments.size(); ++i) {
+    built.make(moments[i], true);
+    if (i == 3) continue;  // one that the field misses
+    for (int a = 0; a < 3; ++a) built.faces.clear(a, build, field[a]);
+    build = built.faces.build();
+    lost += static_cast<int>(built.faces.lost().size());
+    FaceField<float> only;
+    for (auto& f : only) f.assign(grid.lattice.size, 0.0f);
+    built.faces.forEach([&](int a, std::ptrdiff_t place, const double*) {
+      for (int lane = 0; lane < kLanes; ++lane) field[a][place + lane] = only[a][place + lane] = 1.0f;
+    });
+    for (int a = 0; a < 3; ++a) EXPECT_EQ(field[a], only[a]) << i;
+  }
+  EXPECT_GT(lost, 100);
+}
+
 TEST(SteadyRows, NothingHoldsThatWasBuiltBeforeTheLastGeneration) {
   const Lattice l({8, 8, 8}, {false, false, false});
   const std::vector<std::uint8_t> kinds(64, RowKinds::kLiquid);
