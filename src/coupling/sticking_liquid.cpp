@@ -30,6 +30,31 @@ bool localCell(const Lattice& l, const BodyFractions& f, const int cell[3], int 
   return true;
 }
 
+// Cells from a wall beyond which it is not next.
+constexpr int kBesideWall = 2;
+
+bool isClear(const Lattice& l, int axis, int at) {
+  return l.periodic[axis] || (at >= kBesideWall && at < l.n[axis] - kBesideWall);
+}
+
+// 1 for the rows of faces, j fastest, that a body's box holds.
+std::vector<std::uint8_t> rowsOfBodies(const Lattice& l, const std::vector<BodyFractions>& bodies) {
+  const int rows = l.faceEnd(1), planes = l.faceEnd(2);
+  std::vector<std::uint8_t> out(static_cast<std::size_t>(rows) * planes, 0);
+  for (const BodyFractions& body : bodies) {
+    for (int k = body.low[2]; k < body.low[2] + body.count[2]; ++k) {
+      for (int j = body.low[1]; j < body.low[1] + body.count[1]; ++j) {
+        const int at_j = l.periodic[1] ? ((j % rows) + rows) % rows : j;
+        const int at_k = l.periodic[2] ? ((k % planes) + planes) % planes : k;
+        if (at_j >= 0 && at_j < rows && at_k >= 0 && at_k < planes) {
+          out[at_j + static_cast<std::size_t>(rows) * at_k] = 1;
+        }
+      }
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 double stickingViscosity(double density, const Eigen::Vector3d& gravity, double cell_width) {
@@ -40,6 +65,7 @@ double stickingViscosity(double density, const Eigen::Vector3d& gravity, double 
 void attachStickingLiquid(const MacGrid& grid, SolidFractions& solids, std::vector<StickingLiquid>& out) {
   const Lattice& l = grid.lattice;
   out.clear();
+  const std::vector<std::uint8_t> near_body = rowsOfBodies(l, solids.bodies);
   for (int a = 0; a < 3; ++a) {
     const auto& distance = solids.distance[a];
     const auto& owner = solids.owner[a];
@@ -48,7 +74,11 @@ void attachStickingLiquid(const MacGrid& grid, SolidFractions& solids, std::vect
 #pragma omp parallel for schedule(dynamic)
     for (int k = 0; k < l.faceEnd(2); ++k) {
       for (int j = 0; j < l.faceEnd(1); ++j) {
+        // Far from all of them and from the walls beside it only a row's ends are next to a solid.
+        const bool between =
+            !near_body[j + static_cast<std::size_t>(l.faceEnd(1)) * k] && isClear(l, 1, j) && isClear(l, 2, k);
         for (int i = 0; i < l.faceEnd(0); ++i) {
+          if (between && i == kBesideWall) i = std::max(i, l.faceEnd(0) - kBesideWall);
           const auto f = l.index(i, j, k);
           if (!(fluid[f] > 0.0) || distance[f] >= 1.0) continue;
           double kept = 0.0;

@@ -172,7 +172,7 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
   if (!out.viscous) return;
 
   if (strain != nullptr) strain->resize(l);
-  const SampleBuilder samples(l, geometry, out);
+  const SampleBuilder samples(l, geometry, out, steady);
   forEachHeavyRow(l, [&](std::ptrdiff_t row, int j, int k) {
     if (keeps(j, k)) return;
     for (auto& field : out.drag) std::fill_n(field.data() + row, width, 0.0);

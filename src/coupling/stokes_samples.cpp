@@ -1,21 +1,42 @@
 #include "coupling/stokes_samples.h"
 
+#include <algorithm>
+
 namespace monolith {
 
-FaceKinds findFaceKinds(const Lattice& l, const StokesGeometry& g, const StaggeredCoefficients<double>& c) {
+FaceKinds findFaceKinds(const Lattice& l, const StokesGeometry& g, const StaggeredCoefficients<double>& c,
+                        const SteadyRows* steady) {
+  const int low = Lattice::kLowHalo, rows = l.faceEnd(1), planes = l.faceEnd(2);
+  const auto isWanted = [&](int j, int k) {
+    if (steady == nullptr) return true;
+    for (int dk = -1; dk <= 1; ++dk) {
+      for (int dj = -1; dj <= 1; ++dj) {
+        // Also beyond the ends, where the halo is.
+        if (!steady->steady(std::clamp(j + dj, 0, rows - 1), std::clamp(k + dk, 0, planes - 1))) return true;
+      }
+    }
+    return false;
+  };
   FaceKinds kinds;
-  for (int a = 0; a < 3; ++a) {
-    kinds[a].resize(l.size);
-    const double* mass = c.mass[a].data();
-    const double* distance = (*g.solid_distance)[a].data();
-    const double* fluid = (*g.fluid)[a].data();
-    FaceKind* kind = kinds[a].data();
-#pragma omp parallel for simd schedule(static)
-    for (std::size_t f = 0; f < l.size; ++f) {
-      const bool solid = distance[f] <= 0.0;
-      const FaceKind still = solid | (fluid[f] <= 0.0) ? FaceKind::kSolid : FaceKind::kAir;
-      const FaceKind moving = solid ? FaceKind::kSliver : FaceKind::kFluid;
-      kind[f] = mass[f] > 0.0 ? moving : still;
+  for (auto& field : kinds) field.resize(l.size);
+  const auto stride = l.stride[1];
+  const auto per_plane = static_cast<int>(l.stride[2] / stride), all = static_cast<int>(l.size / stride);
+#pragma omp parallel for schedule(static, kPlanesInTurn)
+  for (int row = 0; row < all; ++row) {
+    if (!isWanted(row % per_plane - low, row / per_plane - low)) continue;
+    const auto begin = row * stride;
+    for (int a = 0; a < 3; ++a) {
+      const double* mass = c.mass[a].data() + begin;
+      const double* distance = (*g.solid_distance)[a].data() + begin;
+      const double* fluid = (*g.fluid)[a].data() + begin;
+      FaceKind* kind = kinds[a].data() + begin;
+#pragma omp simd
+      for (std::ptrdiff_t f = 0; f < stride; ++f) {
+        const bool solid = distance[f] <= 0.0;
+        const FaceKind still = solid | (fluid[f] <= 0.0) ? FaceKind::kSolid : FaceKind::kAir;
+        const FaceKind moving = solid ? FaceKind::kSliver : FaceKind::kFluid;
+        kind[f] = mass[f] > 0.0 ? moving : still;
+      }
     }
   }
   return kinds;

@@ -14,16 +14,18 @@ namespace monolith {
 
 using FaceKinds = std::array<std::vector<FaceKind>, 3>;
 
+// `steady`: rows that are not looked at; theirs are found only next to others. May be null.
 FaceKinds findFaceKinds(const Lattice& lattice, const StokesGeometry& geometry,
-                        const StaggeredCoefficients<double>& coefficients);
+                        const StaggeredCoefficients<double>& coefficients, const SteadyRows* steady);
 
 // Liquid part of a cube of width one from the distance at its centre.
 inline double liquidOfCube(double distance) { return std::clamp(0.5 - distance, 0.0, 1.0); }
 
 class SampleBuilder {
  public:
-  SampleBuilder(const Lattice& l, const StokesGeometry& g, const StaggeredCoefficients<double>& c)
-      : lattice(l), geometry(g), kinds_(findFaceKinds(l, g, c)) {}
+  SampleBuilder(const Lattice& l, const StokesGeometry& g, const StaggeredCoefficients<double>& c,
+                const SteadyRows* steady = nullptr)
+      : lattice(l), geometry(g), kinds_(findFaceKinds(l, g, c, steady)) {}
 
   FaceKind kind(int axis, std::ptrdiff_t f) const { return kinds_[axis][f]; }
   // Of component `axis`, from face a to the next along `along`.

@@ -31,40 +31,50 @@ void PressureMultigrid::set(const Lattice& l, const std::vector<std::uint8_t>& h
   for (Lattice c = l; canCoarsen(c); c = coarsened(c)) ++count;
   levels_.resize(count);
   Network& network = finest_;
-  std::vector<std::uint8_t>& pressed = network.beyond;  // for now
-  pressed = has_pressure;
-  fillHalo(l, pressed);
-  network.kind.resize(l.size);
-#pragma omp parallel for simd schedule(static)
-  for (std::size_t c = 0; c < l.size; ++c) network.kind[c] = pressed[c] ? kLiquid : kOutside;
-  assignZero(l.size, network.to_air);
-  forEachRow(l, [&](std::ptrdiff_t row, int, int) {
-    for (auto c = row; c < row + l.faceEnd(0); ++c) {
+  const bool keeps = levels_[0].blocks.wouldKeep(steady) && network.kind.size() == l.size;
+  const auto keepsRow = [&](int j, int k) { return keeps && steady->steady(j, k); };
+  if (!keeps) {
+    assignZero(l.size, network.to_air);
+    assignZero(l.size, network.kind);
+    assignZero(l.size, network.beyond);
+    for (auto& field : network.conductance) assignZero(l.size, field);
+  }
+  const int width = l.faceEnd(0);
+  // First which cells have a pressure; those around tell the rest.
+  forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
+    if (keepsRow(j, k)) return;
+    for (auto c = row; c < row + width; ++c) network.kind[c] = has_pressure[c] ? kLiquid : kOutside;
+  });
+  fillHalo(l, network.kind);
+  const auto pressed = [&](std::ptrdiff_t c) { return network.kind[c] == kLiquid; };
+  forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
+    if (keepsRow(j, k)) return;
+    for (auto c = row; c < row + width; ++c) {
+      float to_air = 0.0f;
       for (int a = 0; a < 3; ++a) {
         const auto sa = l.stride[a];
         const float low = conductance[a][c], high = conductance[a][c + sa];
-        if (!pressed[c]) {
-          if (low > 0.0f || high > 0.0f) network.kind[c] = kAir;
-          continue;
+        network.conductance[a][c] = pressed(c - sa) && pressed(c) ? low : 0.0f;
+        if (pressed(c)) {
+          if (!pressed(c - sa)) to_air += low;
+          if (!pressed(c + sa)) to_air += high;
         }
-        if (!pressed[c - sa]) network.to_air[c] += low;
-        if (!pressed[c + sa]) network.to_air[c] += high;
       }
+      network.to_air[c] = to_air;
     }
   });
-  for (int a = 0; a < 3; ++a) {
-    const auto sa = l.stride[a];
-    assignZero(l.size, network.conductance[a]);
-    forEachRow(l, [&](std::ptrdiff_t row, int, int) {
-      for (auto f = row; f < row + l.faceEnd(0); ++f) {
-        network.conductance[a][f] = pressed[f - sa] && pressed[f] ? conductance[a][f] : 0.0f;
-      }
-    });
-    fillHalo(l, network.conductance[a]);
-  }
+  forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
+    if (keepsRow(j, k)) return;
+    for (auto c = row; c < row + width; ++c) {
+      bool flows = false;
+      for (int a = 0; a < 3; ++a) flows = flows || conductance[a][c] > 0.0f || conductance[a][c + l.stride[a]] > 0.0f;
+      if (!pressed(c) && flows) network.kind[c] = kAir;
+      network.beyond[c] = network.kind[c] == kAir;
+    }
+  });
+  for (auto& field : network.conductance) fillHalo(l, field);
   fillHalo(l, network.kind);
-#pragma omp parallel for simd schedule(static)
-  for (std::size_t c = 0; c < l.size; ++c) network.beyond[c] = network.kind[c] == kAir;
+  fillHalo(l, network.beyond);
   levels_[0].lattice = l;
   finish(network, steady, levels_[0]);
   Network last;
