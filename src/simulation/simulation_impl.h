@@ -71,6 +71,7 @@ struct Simulation::Impl {
 
   void initialise();
   bool hasLiquid() const { return !state.surface[0].empty(); }
+  bool hasSurface() const { return hasLiquid() && !state.surface[0].full(); }
   bool nonNewtonian() const { return hasLiquid() && !viscosity_law.constant(); }
   bool noSlip() const { return viscosity_law.most() > 0.0; }
   double bodySpeed() const;
@@ -80,8 +81,8 @@ struct Simulation::Impl {
   double contactReach(double dt) const;
   BodyPlan planBodies(const StepWeights& w, const std::vector<char>& closing, std::vector<Contact>& contacts) const;
   void prepareSolve(const StepWeights& w);
-  void advectLiquid(const StepWeights& w, FaceField<double>& free_velocity, FaceField<double>& gained);
-  void guess(const StepWeights& w, const FaceField<double>& gained);
+  void advectLiquid(const StepWeights& w, FaceField<double>& free_velocity);
+  void guess(const StepWeights& w, const FaceField<double>& free_velocity);
   CoupledReport solveWithLiquid(const StepWeights& w, const std::vector<Contact>& contacts, StepReport& report);
   void takeMeans(const StepWeights& w, const std::vector<Wrench>& liquid_before);
   void moveLiquid(const StepWeights& w, StepReport& report);
@@ -99,7 +100,7 @@ struct Simulation::Impl {
   FaceField<double> carried;  // velocity that the liquid at each face had at the start of the step
   // Within a sub-step only, kept for their memory.
   struct Scratch {
-    FaceField<double> free_velocity, gained, velocity_before;
+    FaceField<double> free_velocity, velocity_before;
     std::array<std::vector<std::uint8_t>, 3> known_before, known;
   } scratch;
   CoupledSystem system;

@@ -54,37 +54,40 @@ void Simulation::Impl::prepareSolve(const StepWeights& w) {
   step_surface[0].extendIntoSolids(solids.cell_distance);
 }
 
-void Simulation::Impl::advectLiquid(const StepWeights& w, FaceField<double>& free_velocity, FaceField<double>& gained) {
-  if (w.order == 2 && hasLiquid()) {
-    advectAccelerated(grid, state.coupled.velocity, state.acceleration, state.known, w.dt, carried, gained);
+// What the accelerations that particles keep would add is in free_velocity with the rest.
+void Simulation::Impl::advectLiquid(const StepWeights& w, FaceField<double>& free_velocity) {
+  const bool gains = w.order == 2 && hasLiquid();
+  if (gains) {
+    advectAccelerated(grid, state.coupled.velocity, state.acceleration, state.known, w.dt, carried, free_velocity);
   } else {
-    for (auto& field : gained) field.clear();
     advectVelocity(grid, state.coupled.velocity, state.known, w.dt, carried);
   }
   for (int a = 0; a < 3; ++a) {
     const std::size_t size = carried[a].size();
     free_velocity[a].resize(size);
     const double falls = w.implicit * scene.gravity[a];
-    const double part = w.carry * w.dt;
-    const bool gains = !gained[a].empty();
+    const double part = gains ? w.carry * w.dt : 0.0;
 #pragma omp parallel for simd schedule(static)
     for (std::size_t i = 0; i < size; ++i) {
-      free_velocity[a][i] = carried[a][i] + falls + (gains ? part * gained[a][i] : 0.0);
+      free_velocity[a][i] = carried[a][i] + falls + (gains ? part * free_velocity[a][i] : 0.0);
     }
   }
 }
 
 // The solve starts from what there is after another step of the same accelerations.
-void Simulation::Impl::guess(const StepWeights& w, const FaceField<double>& gained) {
+void Simulation::Impl::guess(const StepWeights& w, const FaceField<double>& free_velocity) {
   state.coupled.twists.resize(state.bodies.size());
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
     state.coupled.twists[b] = state.bodies[b].twist;
     if (w.order == 2) state.coupled.twists[b] += w.dt * state.body_acceleration[b];
   }
+  if (w.order == 1 || !hasLiquid()) return;
   for (int a = 0; a < 3; ++a) {
+    const double falls = w.implicit * scene.gravity[a];
 #pragma omp parallel for schedule(static)
-    for (std::size_t i = 0; i < gained[a].size(); ++i) {
-      if (state.known[a][i]) state.coupled.velocity[a][i] = carried[a][i] + w.dt * gained[a][i];
+    for (std::size_t i = 0; i < free_velocity[a].size(); ++i) {
+      const double part = free_velocity[a][i] - carried[a][i] - falls;
+      if (state.known[a][i]) state.coupled.velocity[a][i] = carried[a][i] + part / w.carry;
     }
   }
 }
@@ -93,10 +96,9 @@ CoupledReport Simulation::Impl::solveWithLiquid(const StepWeights& w, const std:
                                                 StepReport& step) {
   const LiquidDescription& liquid = scene.liquid;
   FaceField<double>& free_velocity = scratch.free_velocity;
-  FaceField<double>& gained = scratch.gained;
   {
     const StageClock clock(step.times.advection);
-    advectLiquid(w, free_velocity, gained);
+    advectLiquid(w, free_velocity);
   }
   {
     const StageClock clock(step.times.geometry);
@@ -114,7 +116,7 @@ CoupledReport Simulation::Impl::solveWithLiquid(const StepWeights& w, const std:
   CoupledOptions options;
   options.tolerance = scene.solver.tolerance * (state.started ? 1.0 : kFirstTolerance);
   options.maximum_iterations = scene.solver.maximum_iterations;
-  guess(w, gained);
+  guess(w, free_velocity);
   const auto solve = [&](const CoupledOptions& with) {
     return system.solve(free_velocity, plan.free_twists, scaled, laws.of(contacts), scene.gravity, with, state.coupled);
   };
@@ -174,14 +176,16 @@ void Simulation::Impl::moveLiquid(const StepWeights& w, StepReport& step) {
                      scratch.known);
   }
   if (w.order == 2) {
-    FaceField<double>& mean = scratch.velocity_before;
-    for (int a = 0; a < 3; ++a) {
+    if (hasSurface()) {
+      FaceField<double>& mean = scratch.velocity_before;
+      for (int a = 0; a < 3; ++a) {
 #pragma omp parallel for simd schedule(static)
-      for (std::size_t i = 0; i < grid.lattice.size; ++i) {
-        mean[a][i] = 0.5 * (mean[a][i] + state.coupled.velocity[a][i]);
+        for (std::size_t i = 0; i < grid.lattice.size; ++i) {
+          mean[a][i] = 0.5 * (mean[a][i] + state.coupled.velocity[a][i]);
+        }
       }
+      state.surface[0].advect(mean, w.dt, std::max(step.maximum_speed, state.liquid_speed));
     }
-    state.surface[0].advect(mean, w.dt, std::max(step.maximum_speed, state.liquid_speed));
     // The poses of the solve are those of now but for dt^2/2 times the acceleration.
     state.surface[0].extendIntoSolids(solids.cell_distance);
     predicted = true;
@@ -205,7 +209,7 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
     plan = planBodies(w, closing, contacts);
   }
   const std::vector<Wrench> liquid_before = state.coupled.liquid;
-  if (w.order == 2) scratch.velocity_before = state.coupled.velocity;
+  if (w.order == 2 && hasSurface()) scratch.velocity_before = state.coupled.velocity;
   const CoupledReport solved = solveWithLiquid(w, contacts, step);
   step.iterations += solved.iterations;
   step.liquid_solves += solved.solves;
@@ -225,7 +229,7 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
   step.model.liquid = hasLiquid();
   step.model.viscosity = hasLiquid() && noSlip();
   step.model.non_newtonian = nonNewtonian();
-  step.model.free_surface = hasLiquid() && !state.surface[0].full();
+  step.model.free_surface = hasSurface();
   step.model.time_order = w.order;
   step.model.coupled_bodies = system.coupledBodies();
   step.model.contacts = static_cast<int>(contacts.size());
