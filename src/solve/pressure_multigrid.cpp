@@ -138,7 +138,7 @@ void PressureMultigrid::coarsen(const Lattice& from, const Network& fine, const 
 
 void PressureMultigrid::finish(const Network& network, const SteadyRows* steady, Level& level) const {
   const Lattice& l = level.lattice;
-  if (!level.blocks.wouldKeep(steady)) assignZero(l.size, level.mask);
+  if (!level.blocks.wouldKeep(steady) || level.mask.size() != l.size) assignZero(l.size, level.mask);
   if (&level != &levels_[0]) assignZero(l.size, level.b);
   level.blocks.build(l, {0}, [&](int, std::ptrdiff_t row, int width, auto& k) {
     const std::uint8_t* kind = network.kind.data() + row;

@@ -37,9 +37,8 @@ class StencilBlocks {
   template <class FillRow>
   void build(const Lattice& l, const std::vector<int>& first, FillRow&& fill, const SteadyRows* steady = nullptr);
 
-  // What is written for blocks is zero elsewhere only if it was before. A field that has followed every build needs zeros
-  // just in the blocks that each of them lost: clears those of a component, or, if the field has not (`build`: the last one
-  // that it has followed), all of it; `build` is the present one then.
+  // Kernels write blocks only: a field is zero elsewhere if it was before. One that has followed every build, the last of
+  // them `build`, needs zeros just in the blocks that are lost since: clears those of a component, else all of it.
   template <class Value>
   void clear(int component, long build, std::vector<Value>& field) const {
     if (!follows(build) || field.size() != lattice_.size) {
@@ -107,6 +106,34 @@ class StencilBlocks {
     std::int32_t component, begin, end;
   };
   static constexpr std::size_t kSize = Count * kLanes;
+
+  // What a build makes of one plane of the lattice.
+  struct Plane {
+    std::vector<std::vector<Block>> blocks;  // by components
+    std::vector<std::int32_t> row_ends;      // blocks up to here, of a component's rows
+    std::vector<Real> values;
+    std::vector<std::int32_t> origin;  // of each pattern among the last build's; -1: none
+
+    std::int32_t add(const Real* pattern, std::int32_t from) {
+      values.insert(values.end(), pattern, pattern + kSize);
+      origin.push_back(from);
+      return static_cast<std::int32_t>(origin.size()) - 1;
+    }
+  };
+  // What the last build has left.
+  struct Last {
+    std::vector<Block> blocks;
+    std::vector<Real> values;
+    std::vector<std::int32_t> row_begin;
+
+    std::size_t patterns() const { return values.size() / kSize; }
+  };
+  template <class FillRow>
+  void buildPlane(int k, const std::vector<int>& first, FillRow&& fill, const SteadyRows* kept, const Last& before,
+                  Plane& plane) const;
+  void merge(const std::vector<Plane>& planes, int components, const Last& before);
+  void findLost(int components, const Last& before);
+
   // Some of a pattern's words tell most patterns apart; which are the same is seen from all of them.
   struct PatternHash {
     std::size_t operator()(std::string_view text) const {
@@ -148,89 +175,86 @@ template <class Real, int Count>
 template <class FillRow>
 void StencilBlocks<Real, Count>::build(const Lattice& l, const std::vector<int>& first, FillRow&& fill,
                                        const SteadyRows* steady) {
-  struct Plane {
-    std::vector<std::vector<Block>> blocks;
-    std::vector<std::int32_t> row_ends;  // blocks up to here, of a component's rows
-    std::vector<Real> values;
-    std::vector<std::int32_t> origin;  // of each pattern among the last build's; -1: none
-  };
+  const int components = static_cast<int>(first.size());
+  anew_ = build_ == 0 || lattice_.n != l.n || lattice_.periodic != l.periodic;
+  const bool keeps = !anew_ && wouldKeep(steady);
+  const Last last{std::move(blocks_), std::move(values_), std::move(row_begin_)};
+  lattice_ = l;
+  ++build_;
+  generation_ = steady != nullptr ? steady->generation() : -2;
+  std::vector<Plane> planes(l.faceEnd(2));
+#pragma omp parallel for schedule(static, kPlanesInTurn)
+  for (int k = 0; k < l.faceEnd(2); ++k) buildPlane(k, first, fill, keeps ? steady : nullptr, last, planes[k]);
+  merge(planes, components, last);
+  findLost(components, last);
+}
+
+template <class Real, int Count>
+template <class FillRow>
+void StencilBlocks<Real, Count>::buildPlane(int k, const std::vector<int>& first, FillRow&& fill,
+                                            const SteadyRows* kept, const Last& before, Plane& plane) const {
+  const Lattice& l = lattice_;
   const int components = static_cast<int>(first.size());
   const int row_blocks = (l.n[0] + kLanes - 1) / kLanes;
   const int rows = l.faceEnd(1);
-  std::vector<Plane> planes(l.faceEnd(2));
-  anew_ = build_ == 0 || lattice_.n != l.n || lattice_.periodic != l.periodic;
-  lattice_ = l;
-  ++build_;
-  lost_.clear();
-  const bool keeps = wouldKeep(steady) && row_begin_.size() == planes.size() * components * rows + 1;
-  const std::vector<Block> last_blocks = std::move(blocks_);
-  const std::vector<Real> last_values = std::move(values_);
-  const std::vector<std::int32_t> last_begin = std::move(row_begin_);
-  const std::size_t last_patterns = last_values.size() / kSize;
-#pragma omp parallel for schedule(static, kPlanesInTurn)
-  for (int k = 0; k < l.faceEnd(2); ++k) {
-    Plane& plane = planes[k];
-    plane.blocks.resize(components);
-    Row row;
-    for (auto& r : row) r.resize(row_blocks * kLanes);
-    std::vector<Real> candidate(kSize);
-    std::vector<std::int32_t> here(keeps ? last_patterns : 0, -1);  // patterns of the last build in this plane
-    const auto add = [&](const Real* values, std::int32_t origin) {
-      plane.values.insert(plane.values.end(), values, values + kSize);
-      plane.origin.push_back(origin);
-      return static_cast<std::int32_t>(plane.origin.size()) - 1;
-    };
-    for (int component = 0; component < components; ++component) {
-      std::vector<std::int32_t> above(row_blocks, -1);  // patterns of the row before
-      std::int32_t last = -1;
-      for (int j = 0; j < rows; ++j) {
-        std::vector<Block>& blocks = plane.blocks[component];
-        if (j > 0) plane.row_ends.push_back(static_cast<std::int32_t>(blocks.size()));
-        const auto start = l.index(first[component], j, k);
-        if (keeps && steady->steady(j, k)) {
-          const std::size_t at = (static_cast<std::size_t>(k) * components + component) * rows + j;
-          for (auto b = last_begin[at]; b < last_begin[at + 1]; ++b) {
-            const Block& block = last_blocks[b];
-            std::int32_t& pattern = here[block.pattern];
-            if (pattern < 0) pattern = add(last_values.data() + block.pattern * kSize, block.pattern);
-            above[(block.place - start) / kLanes] = last = pattern;
-            blocks.push_back({block.place, pattern});
-          }
-          continue;
+  plane.blocks.resize(components);
+  Row row;
+  for (auto& r : row) r.resize(row_blocks * kLanes);
+  std::vector<Real> candidate(kSize);
+  // The last build's patterns, in this plane.
+  std::vector<std::int32_t> here(kept != nullptr ? before.patterns() : 0, -1);
+  for (int component = 0; component < components; ++component) {
+    std::vector<Block>& blocks = plane.blocks[component];
+    std::vector<std::int32_t> above(row_blocks, -1);  // patterns of the row before
+    std::int32_t last = -1;
+    for (int j = 0; j < rows; ++j) {
+      if (j > 0) plane.row_ends.push_back(static_cast<std::int32_t>(blocks.size()));
+      const auto start = l.index(first[component], j, k);
+      if (kept != nullptr && kept->steady(j, k)) {
+        const std::size_t at = (static_cast<std::size_t>(k) * components + component) * rows + j;
+        for (auto b = before.row_begin[at]; b < before.row_begin[at + 1]; ++b) {
+          const Block& block = before.blocks[b];
+          std::int32_t& pattern = here[block.pattern];
+          if (pattern < 0) pattern = plane.add(before.values.data() + block.pattern * kSize, block.pattern);
+          above[(block.place - start) / kLanes] = last = pattern;
+          blocks.push_back({block.place, pattern});
         }
-        if (!fill(component, start, row_blocks * kLanes, row)) continue;
-        // Lanes beyond the row; along a periodic axis they hold images.
-        for (int lane = l.faceEnd(0) - first[component]; lane < row_blocks * kLanes; ++lane) {
-          for (auto& r : row) r[lane] = Real(0);
-        }
-        for (int block = 0; block < row_blocks; ++block) {
-          for (int q = 0; q < Count; ++q) {
-            std::copy_n(row[q].data() + block * kLanes, kLanes, candidate.data() + q * kLanes);
-          }
-          if (std::all_of(candidate.begin(), candidate.end(), [](Real value) { return value == Real(0); })) continue;
-          const auto same = [&](std::int32_t pattern) {
-            return pattern >= 0 &&
-                   std::memcmp(plane.values.data() + pattern * kSize, candidate.data(), kSize * sizeof(Real)) == 0;
-          };
-          std::int32_t pattern = same(above[block]) ? above[block] : same(last) ? last : -1;
-          if (pattern < 0) pattern = add(candidate.data(), -1);
-          above[block] = last = pattern;
-          blocks.push_back({static_cast<std::int32_t>(start + block * kLanes), pattern});
-        }
+        continue;
       }
-      plane.row_ends.push_back(static_cast<std::int32_t>(plane.blocks[component].size()));
+      if (!fill(component, start, row_blocks * kLanes, row)) continue;
+      // Lanes beyond the row; along a periodic axis they hold images.
+      for (int lane = l.faceEnd(0) - first[component]; lane < row_blocks * kLanes; ++lane) {
+        for (auto& r : row) r[lane] = Real(0);
+      }
+      for (int block = 0; block < row_blocks; ++block) {
+        for (int q = 0; q < Count; ++q) {
+          std::copy_n(row[q].data() + block * kLanes, kLanes, candidate.data() + q * kLanes);
+        }
+        if (std::all_of(candidate.begin(), candidate.end(), [](Real value) { return value == Real(0); })) continue;
+        const auto same = [&](std::int32_t pattern) {
+          return pattern >= 0 &&
+                 std::memcmp(plane.values.data() + pattern * kSize, candidate.data(), kSize * sizeof(Real)) == 0;
+        };
+        std::int32_t pattern = same(above[block]) ? above[block] : same(last) ? last : -1;
+        if (pattern < 0) pattern = plane.add(candidate.data(), -1);
+        above[block] = last = pattern;
+        blocks.push_back({static_cast<std::int32_t>(start + block * kLanes), pattern});
+      }
     }
+    plane.row_ends.push_back(static_cast<std::int32_t>(blocks.size()));
   }
-  generation_ = steady != nullptr ? steady->generation() : -2;
+}
+
+// One after the other, so that patterns are numbered the same way on any number of threads.
+template <class Real, int Count>
+void StencilBlocks<Real, Count>::merge(const std::vector<Plane>& planes, int components, const Last& before) {
+  const int rows = lattice_.faceEnd(1);
   blocks_.clear();
   segments_.clear();
   values_.clear();
   row_begin_.assign(1, 0);
   std::unordered_map<std::string_view, std::int32_t, PatternHash> known;
-  std::vector<std::int32_t> number, renumbered(keeps ? last_patterns : 0, -1);
-  const auto text = [](const Real* values) {
-    return std::string_view(reinterpret_cast<const char*>(values), kSize * sizeof(Real));
-  };
+  std::vector<std::int32_t> number, renumbered(before.patterns(), -1);
   for (const Plane& plane : planes) {
     number.clear();
     for (std::size_t p = 0; p < plane.origin.size(); ++p) {
@@ -238,7 +262,8 @@ void StencilBlocks<Real, Count>::build(const Lattice& l, const std::vector<int>&
       std::int32_t found = origin < 0 ? -1 : renumbered[origin];
       if (found < 0) {
         const Real* values = plane.values.data() + p * kSize;
-        const auto [entry, fresh] = known.try_emplace(text(values), values_.size() / kSize);
+        const std::string_view text(reinterpret_cast<const char*>(values), kSize * sizeof(Real));
+        const auto [entry, fresh] = known.try_emplace(text, values_.size() / kSize);
         if (fresh) values_.insert(values_.end(), values, values + kSize);
         found = entry->second;
         if (origin >= 0) renumbered[origin] = found;
@@ -253,15 +278,20 @@ void StencilBlocks<Real, Count>::build(const Lattice& l, const std::vector<int>&
       if (end > begin) segments_.push_back({component, begin, end});
     }
   }
+}
+
+// Both builds in the same order: by rows, and along them.
+template <class Real, int Count>
+void StencilBlocks<Real, Count>::findLost(int components, const Last& before) {
+  lost_.clear();
   if (anew_) return;
-  // Both in the same order: by rows, and along them.
-  const std::size_t all = row_begin_.size() - 1;
-  for (std::size_t at = 0; at < all; ++at) {
+  const int rows = lattice_.faceEnd(1);
+  for (std::size_t at = 0; at + 1 < row_begin_.size(); ++at) {
     auto now = row_begin_[at];
-    for (auto b = last_begin[at]; b < last_begin[at + 1]; ++b) {
-      while (now < row_begin_[at + 1] && blocks_[now].place < last_blocks[b].place) ++now;
-      if (now < row_begin_[at + 1] && blocks_[now].place == last_blocks[b].place) continue;
-      lost_.push_back({static_cast<std::int32_t>(at / rows % components), last_blocks[b].place});
+    for (auto b = before.row_begin[at]; b < before.row_begin[at + 1]; ++b) {
+      while (now < row_begin_[at + 1] && blocks_[now].place < before.blocks[b].place) ++now;
+      if (now < row_begin_[at + 1] && blocks_[now].place == before.blocks[b].place) continue;
+      lost_.push_back({static_cast<std::int32_t>(at / rows % components), before.blocks[b].place});
     }
   }
 }

@@ -136,7 +136,7 @@ void buildFaceBlocks(const StaggeredCoefficients<From>& c, FaceBlocks<Real>& out
   for (auto* fields : {transfer, conductance}) {
     if (fields == nullptr) continue;
     for (auto& field : *fields) {
-      if (!keeps) assignZero(l.size, field);
+      if (!keeps || field.size() != l.size) assignZero(l.size, field);
     }
   }
   // Along the rows of their own axis faces on the low wall have no unknown.
