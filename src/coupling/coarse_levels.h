@@ -2,7 +2,6 @@
 // Coefficients of the multigrid's levels below the finest, and how long they serve: they steer the solve and never
 // decide its answer, so bodies may move a little before they are built anew.
 
-#include <memory>
 #include <vector>
 
 #include "rigid/rigid_body.h"

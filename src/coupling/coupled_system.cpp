@@ -46,10 +46,10 @@ struct CoupledSystem::Impl {
     x.bodies = state.twists;
     clearOthers();
   }
-  // The same without a copy: the state's fields are empty until giveBack().
+  // The same without a copy: the state's fields are x's until giveBack().
   void take(CoupledState& state) {
-    x.velocity = std::move(state.velocity);
-    x.pressure = std::move(state.pressure);
+    x.velocity.swap(state.velocity);
+    x.pressure.swap(state.pressure);
     x.bodies = state.twists;
     clearOthers();
   }
@@ -57,8 +57,8 @@ struct CoupledSystem::Impl {
     problem.toVelocities(x.velocity);
 #pragma omp parallel for simd schedule(static)
     for (std::size_t i = 0; i < x.pressure.size(); ++i) x.pressure[i] *= problem.pressure_scale;
-    state.velocity = std::move(x.velocity);
-    state.pressure = std::move(x.pressure);
+    state.velocity.swap(x.velocity);
+    state.pressure.swap(x.pressure);
   }
 
  private:

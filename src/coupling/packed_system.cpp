@@ -78,11 +78,11 @@ void PackedSystem::updateSchur() {
     fresh_cost_ = lost_ = 0.0;
     stale_ = false;
   }
-  Eigen::VectorXd inverse = scale_.cwiseInverse();
+  Eigen::VectorXd weight = scale_.cwiseInverse();
   for (std::size_t i = 0; i < p.free.size(); ++i) {
-    inverse.segment<6>(6 * i) *= std::sqrt(resistanceRatio(p.radius[i], resistance_number_, p.viscous_number));
+    weight.segment<6>(6 * i) *= std::sqrt(resistanceRatio(p.radius[i], resistance_number_, p.viscous_number));
   }
-  S_ = inverse.asDiagonal() * resistance_ * inverse.asDiagonal();
+  S_ = weight.asDiagonal() * resistance_ * weight.asDiagonal();
   S_ += bodies_ - columns_.ownResistance();
   S_inverse_ = S_.ldlt().solve(Eigen::MatrixXd::Identity(bodySize(), bodySize()));
 }

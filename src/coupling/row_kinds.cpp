@@ -29,15 +29,12 @@ RowKinds findRowKinds(const Lattice& l, const std::vector<BodyFractions>& bodies
                                                                          : RowKinds::kMixed;
   });
   out.full = std::all_of(out.kinds.begin(), out.kinds.end(), [](auto kind) { return kind == RowKinds::kLiquid; });
-  const auto at = [&](int index, int axis) {
-    return l.periodic[axis] ? ((index % l.n[axis]) + l.n[axis]) % l.n[axis] : std::clamp(index, 0, l.n[axis] - 1);
-  };
-  for (const BodyFractions& body : bodies) {
-    if (body.count[0] == 0) continue;
-    for (int k = body.low[2]; k < body.low[2] + body.count[2]; ++k) {
-      for (int j = body.low[1]; j < body.low[1] + body.count[1]; ++j) {
-        out.kinds[at(j, 1) + static_cast<std::size_t>(rows) * at(k, 2)] = RowKinds::kMixed;
-      }
+  // The last rows of faces count with the cells before them.
+  const std::vector<std::uint8_t> near_body = rowsOfBodies(l, bodies);
+  for (int k = 0; k < l.faceEnd(2); ++k) {
+    for (int j = 0; j < l.faceEnd(1); ++j) {
+      if (!near_body[j + static_cast<std::size_t>(l.faceEnd(1)) * k]) continue;
+      out.kinds[std::min(j, rows - 1) + static_cast<std::size_t>(rows) * std::min(k, l.n[2] - 1)] = RowKinds::kMixed;
     }
   }
   return out;

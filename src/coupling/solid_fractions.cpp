@@ -69,6 +69,21 @@ void forEachFace(const Lattice& l, const BodyFractions& box, int axis, Function&
 
 }  // namespace
 
+std::vector<std::uint8_t> rowsOfBodies(const Lattice& l, const std::vector<BodyFractions>& bodies) {
+  const int rows = l.faceEnd(1), planes = l.faceEnd(2);
+  std::vector<std::uint8_t> out(static_cast<std::size_t>(rows) * planes, 0);
+  for (const BodyFractions& body : bodies) {
+    for (int k = body.low[2]; k < body.low[2] + body.count[2]; ++k) {
+      for (int j = body.low[1]; j < body.low[1] + body.count[1]; ++j) {
+        const int at_j = l.periodic[1] ? wrapped(j, rows) : j, at_k = l.periodic[2] ? wrapped(k, planes) : k;
+        if (at_j < 0 || at_j >= rows || at_k < 0 || at_k >= planes) continue;
+        out[at_j + static_cast<std::size_t>(rows) * at_k] = 1;
+      }
+    }
+  }
+  return out;
+}
+
 void SolidSampler::sample(const std::vector<RigidBody>& bodies, SolidFractions& out) {
   // The tank without bodies. What lies beyond the halo is never looked at.
   const Lattice& l = grid_.lattice;

@@ -57,6 +57,9 @@ struct SolidFractions {
   std::vector<BodyFractions> bodies;
 };
 
+// 1 for the x-rows of faces, j fastest, that the box of a body holds: in others there are the tank's walls alone.
+std::vector<std::uint8_t> rowsOfBodies(const Lattice& lattice, const std::vector<BodyFractions>& bodies);
+
 class SolidSampler {
  public:
   explicit SolidSampler(const MacGrid& grid) : grid_(grid) {}

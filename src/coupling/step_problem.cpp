@@ -129,6 +129,10 @@ void StepProblem::assembleFractions(const SolidFractions& solids, const std::vec
       }
     });
   }
+  // mass U^2 = (W_F W_L) u^2
+  liquid_mass_ = coefficients.mass;
+  toUnknowns(liquid_mass_);
+  toUnknowns(liquid_mass_);
 }
 
 void StepProblem::toUnknowns(FaceField<double>& velocity) const {
@@ -143,14 +147,6 @@ void StepProblem::toVelocities(FaceField<double>& unknowns) const {
       unknowns[a][f] = isResolved(a, f) ? unknowns[a][f] / flux_share[a][f] : 0.0;
     }
   }
-}
-
-FaceField<double> StepProblem::liquidMass() const {
-  // mass U^2 = (W_F W_L) u^2
-  FaceField<double> mass = coefficients.mass;
-  toUnknowns(mass);
-  toUnknowns(mass);
-  return mass;
 }
 
 // It has moved with its body: its momentum is not that of the face, which is slower.

@@ -59,7 +59,7 @@ class StepProblem {
     return resolved_[axis].empty() ? coefficients.mass[axis][face] > 0.0 : resolved_[axis][face] != 0;
   }
   // Liquid in a face's control volume: (rho h^3) liquidMass() u is its momentum.
-  FaceField<double> liquidMass() const;
+  const FaceField<double>& liquidMass() const { return liquid_mass_[0].empty() ? coefficients.mass : liquid_mass_; }
 
   // Everything is built anew the next time.
   void forget();
@@ -100,6 +100,7 @@ class StepProblem {
   std::string balanceSealedRegions(std::vector<double>& flux) const;
 
   std::array<std::vector<std::uint8_t>, 3> resolved_;  // empty: every face with an unknown
+  FaceField<double> liquid_mass_;                      // empty: the coefficients'
   mutable StepOperator op_;
 };
 

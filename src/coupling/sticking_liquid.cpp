@@ -37,24 +37,6 @@ bool isClear(const Lattice& l, int axis, int at) {
   return l.periodic[axis] || (at >= kBesideWall && at < l.n[axis] - kBesideWall);
 }
 
-// 1 for the rows of faces, j fastest, that a body's box holds.
-std::vector<std::uint8_t> rowsOfBodies(const Lattice& l, const std::vector<BodyFractions>& bodies) {
-  const int rows = l.faceEnd(1), planes = l.faceEnd(2);
-  std::vector<std::uint8_t> out(static_cast<std::size_t>(rows) * planes, 0);
-  for (const BodyFractions& body : bodies) {
-    for (int k = body.low[2]; k < body.low[2] + body.count[2]; ++k) {
-      for (int j = body.low[1]; j < body.low[1] + body.count[1]; ++j) {
-        const int at_j = l.periodic[1] ? ((j % rows) + rows) % rows : j;
-        const int at_k = l.periodic[2] ? ((k % planes) + planes) % planes : k;
-        if (at_j >= 0 && at_j < rows && at_k >= 0 && at_k < planes) {
-          out[at_j + static_cast<std::size_t>(rows) * at_k] = 1;
-        }
-      }
-    }
-  }
-  return out;
-}
-
 }  // namespace
 
 double stickingViscosity(double density, const Eigen::Vector3d& gravity, double cell_width) {

@@ -68,12 +68,8 @@ double Simulation::Impl::bodySpeed() const {
 void Simulation::Impl::measure(StepReport& step) const {
   if (hasLiquid()) {
     step.liquid_volume = state.surface[0].volume(solids.cell_fluid);
-    const StepProblem& problem = system.problem();
-    FaceField<double> shared;
-    if (!problem.flux_share[0].empty()) shared = problem.liquidMass();
-    const FaceField<double>& mass = shared[0].empty() ? problem.coefficients.mass : shared;
-    const LiquidBudget budget = liquidBudget(grid, mass, state.coupled.velocity, state.surface[0], solids.cell_fluid,
-                                             scene.liquid.density, scene.gravity);
+    const LiquidBudget budget = liquidBudget(grid, system.problem().liquidMass(), state.coupled.velocity,
+                                             state.surface[0], solids.cell_fluid, scene.liquid.density, scene.gravity);
     step.kinetic_energy = budget.kinetic + sticking_energy;
     step.potential_energy = budget.potential;
     step.liquid_momentum = budget.momentum + sticking_momentum;

@@ -184,13 +184,19 @@ double Fgmres::residual(const KrylovMaps& maps, const std::vector<double>& b, st
   }));
 }
 
-// z = P^-1 v, w = A z.
-void Fgmres::extend(const KrylovMaps& maps, std::vector<float>& v, std::vector<float>& z, std::vector<float>& w) {
-  maps.precondition(v, z);
+void Fgmres::extend(const KrylovMaps& maps, bool known, std::vector<float>& v, std::vector<float>& z,
+                    std::vector<float>& w) {
+  if (known) {
+    maps.complete(v, z);
+  } else {
+    maps.precondition(v, z);
+  }
   maps.apply_single(z, w);
 }
 
-void Fgmres::extend(const KrylovMaps& maps, std::vector<double>& v, std::vector<double>& z, std::vector<double>& w) {
+// firstDirection() is in single precision.
+void Fgmres::extend(const KrylovMaps& maps, bool, std::vector<double>& v, std::vector<double>& z,
+                    std::vector<double>& w) {
   scaleInto(v, 1.0, v_single_);
   z_single_.resize(v.size(), 0.0f);
   maps.precondition(v_single_, z_single_);
@@ -216,17 +222,9 @@ int Fgmres::cycle(const KrylovMaps& maps, double norm, double goal, int most, bo
     const int j = used;
     std::vector<Real>& w = space.basisRoom(j + 1, size);
     std::vector<Real>& z = space.directionRoom(j, size);
-    if constexpr (single) {
-      if (j == 0 && first_known) {
-        scaleInto(z, 1.0 / norm, z);
-        maps.complete(space.basis[0], z);
-        maps.apply_single(z, w);
-      } else {
-        extend(maps, space.basis[j], z, w);
-      }
-    } else {
-      extend(maps, space.basis[j], z, w);
-    }
+    const bool known = first_known && j == 0;
+    if (known) scaleInto(z, 1.0 / norm, z);
+    extend(maps, known, space.basis[j], z, w);
     // Modified Gram-Schmidt, whose coefficients are h = (I + L)^-1 V^T w with L the strictly lower part of V^T V
     // (Swirydowicz et al. 2021, Numer. Linear Algebra Appl. 28, e2343): it reads the basis twice, not four times.
     Eigen::VectorXd h, row;

@@ -72,13 +72,15 @@ class Fgmres {
   };
 
   double residual(const KrylovMaps& maps, const std::vector<double>& b, std::vector<double>& x);
-  // One cycle on the residual in work_, until it is `goal` times as large; adds to x. first_known: of the first direction only
-  // a rest is missing. Returns the number of directions.
+  // One cycle on the residual in work_, until it is `goal` times as large; adds to x. first_known: only a rest of the
+  // first direction is missing. Returns the number of directions.
   template <class Real>
   int cycle(const KrylovMaps& maps, double norm, double goal, int most, bool first_known, Space<Real>& space,
             std::vector<double>& x);
-  void extend(const KrylovMaps& maps, std::vector<float>& v, std::vector<float>& z, std::vector<float>& w);
-  void extend(const KrylovMaps& maps, std::vector<double>& v, std::vector<double>& z, std::vector<double>& w);
+  // z = P^-1 v, or only the rest of it; w = A z.
+  void extend(const KrylovMaps& maps, bool known, std::vector<float>& v, std::vector<float>& z, std::vector<float>& w);
+  void extend(const KrylovMaps& maps, bool known, std::vector<double>& v, std::vector<double>& z,
+              std::vector<double>& w);
 
   Space<float> single_;
   Space<double> double_;  // empty unless it was needed
