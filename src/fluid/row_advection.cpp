@@ -69,64 +69,112 @@ inline Four component(const double* u, const Lattice& l, const Four x[3]) {
   return interpolate<count(0), count(1), count(2)>(u, l, w[0], w[1], w[2]);
 }
 
-// Cubic at the foot, displaced by x; up: to the high side of an axis. With n = 4 all four are on the same side of each
-// axis; with n = 5 each has its own, and a node that is not in its stencil counts with weight zero and as no extremum.
-template <int n, bool limited>
-Four cubic(const double* u, const Lattice& l, const Four x[3], const Mask up[3]) {
-  const Four zero = all(0.0), infinite = all(std::numeric_limits<double>::infinity());
-  Four w[3][n];
-  for (int d = 0; d < 3; ++d) {
-    const Four t = up[d] ? x[d] : x[d] + 1.0;
-    const Four c[4] = {-t * (t - 1.0) * (t - 2.0) * (1.0 / 6.0), (t + 1.0) * (t - 1.0) * (t - 2.0) * 0.5,
-                       -(t + 1.0) * t * (t - 2.0) * 0.5, (t + 1.0) * t * (t - 1.0) * (1.0 / 6.0)};
-    if (n == 4) {
-      for (int q = 0; q < 4; ++q) w[d][q] = c[q];
-      u -= (up[d][0] ? 1 : 2) * l.stride[d];
-    } else {
-      w[d][0] = up[d] ? zero : c[0];
-      for (int q = 1; q < 4; ++q) w[d][q] = up[d] ? c[q - 1] : c[q];
-      w[d][n - 1] = up[d] ? c[3] : zero;
-      u -= 2 * l.stride[d];
+// Feet of the trajectories of four nodes of axis a (-1: cells) next to each other.
+struct Feet {
+  Four x[3];       // displacement, at most a cell
+  Mask up[3];      // to the high side
+  Mask lowest[3];  // there is but one node below
+  bool together;   // the same stencil for all four
+};
+
+// Weights of a cubic's nodes at a displacement x, up: to the high side.
+inline void cubicWeights(Four x, Mask up, Four w[4]) {
+  const Four t = up ? x : x + 1.0;
+  w[0] = -t * (t - 1.0) * (t - 2.0) * (1.0 / 6.0);
+  w[1] = (t + 1.0) * (t - 1.0) * (t - 2.0) * 0.5;
+  w[2] = -(t + 1.0) * t * (t - 2.0) * 0.5;
+  w[3] = (t + 1.0) * t * (t - 1.0) * (1.0 / 6.0);
+}
+
+// Nodes along one axis of stencils that differ: `count` of them from `first` on.
+struct Nodes {
+  int first = -1, count = 4;
+  Four w[5];
+  Mask out[5] = {};  // not in the stencil: weight zero, and no extremum
+
+  // From a lowest node down linear, as sampleCubic().
+  Nodes(Four x, Mask up, Mask lowest) {
+    const Four zero = all(0.0);
+    const Mask line = lowest & ~up;
+    Four c[4];
+    cubicWeights(x, up, c);
+    if (every(up | lowest)) {
+      w[0] = line ? -x : c[0];
+      w[1] = line ? x + 1.0 : c[1];
+      w[2] = line ? zero : c[2];
+      w[3] = line ? zero : c[3];
+      out[2] = out[3] = line;
+      return;
     }
+    first = -2;
+    count = none(up | lowest) ? 4 : 5;
+    out[0] = up | line;
+    out[3] = line;
+    out[4] = ~up;
+    w[0] = out[0] ? zero : c[0];
+    w[1] = up ? c[0] : line ? -x : c[1];
+    w[2] = up ? c[1] : line ? x + 1.0 : c[2];
+    w[3] = up ? c[2] : line ? zero : c[3];
+    w[4] = up ? c[3] : zero;
   }
-  Four sum = zero, lowest = infinite, highest = -infinite;
-  // Leaves out what the n-th node along an axis found where it is not in the stencil.
-  const auto merge = [&](int d, int q, Four low, Four high, Four& to_low, Four& to_high) {
-    if (n == 5 && (q == 0 || q == n - 1)) {
-      const Mask out = q == 0 ? up[d] : ~up[d];
-      low = out ? infinite : low;
-      high = out ? -infinite : high;
-    }
-    to_low = least(to_low, low);
-    to_high = most(to_high, high);
-  };
-  for (int k = 0; k < n; ++k) {
-    Four plane = zero, plane_low = infinite, plane_high = -infinite;
-    for (int j = 0; j < n; ++j) {
-      const double* p = u + j * l.stride[1] + k * l.stride[2];
-      Four line = zero, line_low = infinite, line_high = -infinite;
-      for (int i = 0; i < n; ++i) {
-        const Four value = at(p + i);
-        line += w[0][i] * value;
-        if (limited) merge(0, i, value, value, line_low, line_high);
-      }
-      plane += w[1][j] * line;
-      if (limited) merge(1, j, line_low, line_high, plane_low, plane_high);
-    }
-    sum += w[2][k] * plane;
-    if (limited) merge(2, k, plane_low, plane_high, lowest, highest);
-  }
-  if (!limited) return sum;
+};
+
+Four limit(Four sum, Four lowest, Four highest) {
   const Four slack = kOvershoot * (highest - lowest);
   return least(most(sum, lowest - slack), highest + slack);
 }
 
-// Feet of the trajectories of four nodes of axis a (-1: cells) next to each other.
-struct Feet {
-  Four x[3];      // displacement, at most a cell
-  Mask up[3];     // to the high side
-  bool together;  // all in the same octant
-};
+template <bool limited>
+Four cubicTogether(const double* u, const Lattice& l, const Feet& feet) {
+  Four w[3][4];
+  for (int d = 0; d < 3; ++d) {
+    cubicWeights(feet.x[d], feet.up[d], w[d]);
+    u -= (feet.up[d][0] ? 1 : 2) * l.stride[d];
+  }
+  const double infinite = std::numeric_limits<double>::infinity();
+  Four sum = all(0.0), lowest = all(infinite), highest = all(-infinite);
+  for (int k = 0; k < 4; ++k) {
+    Four plane = all(0.0);
+    for (int j = 0; j < 4; ++j) {
+      const double* p = u + j * l.stride[1] + k * l.stride[2];
+      const Four n0 = at(p), n1 = at(p + 1), n2 = at(p + 2), n3 = at(p + 3);
+      plane += w[1][j] * ((w[0][0] * n0 + w[0][1] * n1) + (w[0][2] * n2 + w[0][3] * n3));
+      // Pairs first: a comparison that waits for the one before would take longer than the sum.
+      if (limited) lowest = least(lowest, least(least(n0, n1), least(n2, n3)));
+      if (limited) highest = most(highest, most(most(n0, n1), most(n2, n3)));
+    }
+    sum += w[2][k] * plane;
+  }
+  return limited ? limit(sum, lowest, highest) : sum;
+}
+
+template <bool limited>
+Four cubicApart(const double* u, const Lattice& l, const Nodes& x, const Nodes& y, const Nodes& z) {
+  const Four zero = all(0.0), infinite = all(std::numeric_limits<double>::infinity());
+  u += x.first + y.first * l.stride[1] + z.first * l.stride[2];
+  Four sum = zero, lowest = infinite, highest = -infinite;
+  const auto merge = [&](Mask out, Four low, Four high, Four& to_low, Four& to_high) {
+    to_low = least(to_low, out ? infinite : low);
+    to_high = most(to_high, out ? -infinite : high);
+  };
+  for (int k = 0; k < z.count; ++k) {
+    Four plane = zero, plane_low = infinite, plane_high = -infinite;
+    for (int j = 0; j < y.count; ++j) {
+      const double* p = u + j * l.stride[1] + k * l.stride[2];
+      Four line = zero, line_low = infinite, line_high = -infinite;
+      for (int i = 0; i < x.count; ++i) {
+        const Four value = at(p + i);
+        line += x.w[i] * value;
+        if (limited) merge(x.out[i], value, value, line_low, line_high);
+      }
+      plane += y.w[j] * line;
+      if (limited) merge(y.out[j], line_low, line_high, plane_low, plane_high);
+    }
+    sum += z.w[k] * plane;
+    if (limited) merge(z.out[k], plane_low, plane_high, lowest, highest);
+  }
+  return limited ? limit(sum, lowest, highest) : sum;
+}
 
 // With the velocity at `part` of the way back. False as advectFour().
 template <int a>
@@ -153,21 +201,31 @@ bool findFeet(const Lattice& l, const FaceField<double>& velocity, const std::ar
   feet.x[1] = -scale * component<a, 1>(u[1], l, x);
   feet.x[2] = -scale * component<a, 2>(u[2], l, x);
   feet.together = true;
+  bool apart_along_x = false;
   for (int d = 0; d < 3; ++d) {
+    const std::int64_t at_lowest = first[d] == 0 ? -1 : 0;
+    const std::int64_t next_to_it = d == 0 ? 0 : at_lowest;
+    const Mask lowest = {at_lowest, next_to_it, next_to_it, next_to_it};
+    feet.lowest[d] = lowest;
+    // Not below the wall.
+    if (first[d] == 0) feet.x[d] = lowest & (feet.x[d] < -0.5) ? all(-0.5) : feet.x[d];
     feet.up[d] = feet.x[d] >= 0.0;
-    feet.together = feet.together && (every(feet.up[d]) || none(feet.up[d]));
-    // There is one node below the first.
-    if (first[d] == 0 && !every(feet.up[d])) return false;
+    const bool same = every(feet.up[d]) || none(feet.up[d] | lowest);
+    feet.together = feet.together && same;
+    if (d == 0) apart_along_x = !same;
+    if (l.periodic[d] && any(lowest & ~feet.up[d])) return false;
     far |= (feet.x[d] > 1.0) | (feet.x[d] < -1.0);
   }
-  if (any(far)) return false;
-  const bool lowest = first[0] == 0 || first[1] == 0 || first[2] == 0;
-  return !lowest || feet.together;
+  // Five nodes along x then begin in the row before, which the very first one lacks.
+  if (apart_along_x && first[0] == 0 && first[1] <= 1 && first[2] <= 1) return false;
+  return none(far);
 }
 
 template <bool limited>
-Four cubicAt(const double* field, const Lattice& l, const Feet& feet) {
-  return feet.together ? cubic<4, limited>(field, l, feet.x, feet.up) : cubic<5, limited>(field, l, feet.x, feet.up);
+Four cubicAt(const double* u, const Lattice& l, const Feet& feet) {
+  if (feet.together) return cubicTogether<limited>(u, l, feet);
+  const auto nodes = [&](int d) { return Nodes(feet.x[d], feet.up[d], feet.lowest[d]); };
+  return cubicApart<limited>(u, l, nodes(0), nodes(1), nodes(2));
 }
 
 template <int a>
