@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "solve/kernel_work.h"
+
 namespace monolith {
 namespace {
 
@@ -161,6 +163,7 @@ void BodyColumns<Real>::convert(const BodyColumns<From>& from) {
 
 template <class Real>
 void BodyColumns<Real>::addMotion(const Real* v, Real* liquid) const {
+  countWork(entries_.size(), 12.0, sizeof(Entry) + 2.0 * sizeof(Real));
   for (std::size_t b = 0; b + 1 < begin_.size(); ++b) {
     const Real* w = v + 6 * b;
     for (std::size_t i = begin_[b]; i < begin_[b + 1]; ++i) {
@@ -172,6 +175,7 @@ void BodyColumns<Real>::addMotion(const Real* v, Real* liquid) const {
 
 template <class Real>
 Eigen::VectorXd BodyColumns<Real>::forces(const Real* liquid) const {
+  countWork(entries_.size(), 12.0, sizeof(Entry) + sizeof(Real));
   const std::size_t bodies = begin_.empty() ? 0 : begin_.size() - 1;
   Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(6 * bodies));
   for (std::size_t b = 0; b < bodies; ++b) {

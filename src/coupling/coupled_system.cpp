@@ -37,8 +37,13 @@ struct CoupledSystem::Impl {
   std::unique_ptr<StepSolver> solver;
   CouplingName coupling;
   VariableViscosity viscosity;
-  StepVector rhs, x;
+  StepVector rhs, x;      // without velocities between solves
+  double rhs_norm = 0.0;  // of the last solve, where viscosity varies
 
+  // Of the right side in rhs.
+  CoupledReport solve(const std::vector<Vector6d>& free_twists, const std::vector<Contact>& contacts,
+                      const std::vector<ContactLaw>& laws, const Eigen::Vector3d& gravity,
+                      const CoupledOptions& options, CoupledState& state);
   // Velocities and pressures of a state where they are unknowns; all twists.
   void load(const CoupledState& state) {
     x.velocity = state.velocity;
@@ -142,42 +147,50 @@ void CoupledSystem::setViscosity(const ViscosityField& field) {
 
 double CoupledSystem::viscousChange(const CoupledState& solution, const ViscosityField& next) {
   impl_->load(solution);
-  const double scale = stepNorm(impl_->problem, impl_->rhs);
+  const double scale = impl_->rhs_norm;
   const double change = impl_->viscosity.change(impl_->problem, next, impl_->x);
   return scale > 0.0 ? change / scale : change;
 }
 
-CoupledReport CoupledSystem::solve(const FaceField<double>& free_velocity, const std::vector<Vector6d>& free_twists,
+CoupledReport CoupledSystem::solve(FaceField<double>& free_velocity, const std::vector<Vector6d>& free_twists,
                                    const std::vector<Contact>& contacts, const std::vector<ContactLaw>& laws,
                                    const Eigen::Vector3d& gravity, const CoupledOptions& options,
                                    CoupledState& state) {
   Impl& m = *impl_;
-  const StepProblem& p = m.problem;
   CoupledReport report;
-  report.message = p.rightSide(free_velocity, free_twists, gravity, m.rhs);
-  if (!report.message.empty()) {
+  report.message = m.problem.rightSide(std::move(free_velocity), free_twists, gravity, m.rhs);
+  if (report.message.empty()) {
+    report = m.solve(free_twists, contacts, laws, gravity, options, state);
+  } else {
     report.status = CoupledReport::Status::kInconsistent;
-    return report;
   }
+  free_velocity = std::move(m.rhs.velocity);
+  return report;
+}
 
+CoupledReport CoupledSystem::Impl::solve(const std::vector<Vector6d>& free_twists, const std::vector<Contact>& contacts,
+                                         const std::vector<ContactLaw>& laws, const Eigen::Vector3d& gravity,
+                                         const CoupledOptions& options, CoupledState& state) {
+  const StepProblem& p = problem;
+  if (!p.cell_viscosity.empty()) rhs_norm = stepNorm(p, rhs);
   // Initial guess.
-  m.take(state);
+  take(state);
   for (std::size_t b = 0; b < p.bodies->size(); ++b) {
-    if (p.free_index[b] < 0) m.x.bodies[b] = free_twists[b];
+    if (p.free_index[b] < 0) x.bodies[b] = free_twists[b];
   }
 
   const ContactRows rows =
       buildContactRows(p, contacts, laws, free_twists, kRestingSteps * gravity.norm() * p.dt);
   Eigen::VectorXd r = warmStart(p, rows, contacts, state.impulses);
-  report = contacts.empty()                             ? m.solver->solve(m.rhs, options, m.x)
-           : m.coupling == CouplingName::kIterative ? solveIteratively(*m.solver, p, m.rhs, rows, options, m.x, r)
-                                                    : m.solver->solveWithContacts(m.rhs, rows, options, m.x, r);
+  CoupledReport report = contacts.empty()                       ? solver->solve(rhs, options, x)
+                         : coupling == CouplingName::kIterative ? solveIteratively(*solver, p, rhs, rows, options, x, r)
+                                                                : solver->solveWithContacts(rhs, rows, options, x, r);
   const bool converged = report.status == CoupledReport::Status::kConverged;
   if (converged) {
-    state.twists = m.x.bodies;
-    p.results(m.x, gravity, state.liquid, report.divergence);
+    state.twists = x.bodies;
+    p.results(x, gravity, state.liquid, report.divergence);
   }
-  m.giveBack(state);
+  giveBack(state);
   if (!converged) return report;
   distributeImpulses(p, rows, contacts, r, state.impulses, state.contact);
   return report;

@@ -4,6 +4,7 @@
 
 #include "solve/assign_zero.h"
 #include "solve/blocked_sum.h"
+#include "solve/kernel_work.h"
 
 namespace monolith {
 namespace {
@@ -16,6 +17,7 @@ constexpr int kViscousSmootherDegree = 4;
 
 float removeMean(const std::vector<std::int32_t>& cells, float* field) {
   const auto size = static_cast<std::ptrdiff_t>(cells.size());
+  countWork(cells.size(), 2.0, 2.0 * sizeof(std::int32_t) + 3.0 * sizeof(float));
   const double sum = blockedSum<double>(size, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     double part = 0.0;
     for (auto i = begin; i < end; ++i) part += field[cells[i]];
@@ -102,10 +104,12 @@ void LiquidPreconditioner::apply(const float* r, float flux_scale, float* x) {
   if (projects()) {
     project(l, *faces_, u, phi, out);
   } else {
+    countWork(3 * l.size, 0.0, 2.0 * sizeof(float));
     for (int a = 0; a < 3; ++a) std::copy_n(u[a], size, out[a]);
   }
   float* p = x + 3 * size;
   const float *g = g_.data(), *weight = weight_.data();
+  countWork(l.size, 2.0, 4.0 * sizeof(float));
 #pragma omp parallel for simd schedule(static)
   for (std::ptrdiff_t i = 0; i < size; ++i) p[i] = phi[i] + weight[i] * g[i];
   for (float* field : {x, x + size, x + 2 * size, p}) fillHalo(l, field);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "coupling/body_schur.h"
+#include "solve/kernel_work.h"
 
 namespace monolith {
 namespace {
@@ -169,6 +170,7 @@ void PackedSystem::apply(const FaceBlocks<Real>& faces, const CellBlocks<Real>& 
   if (flux_weight_ != 1.0) {
     const Real weight = static_cast<Real>(flux_weight_);
     Real* flux = to + 3 * size;
+    countWork(size, 1.0, 2.0 * sizeof(Real));
 #pragma omp parallel for simd schedule(static)
     for (std::size_t i = 0; i < size; ++i) flux[i] *= weight;
   }

@@ -135,6 +135,16 @@ void StepProblem::assembleFractions(const SolidFractions& solids, const std::vec
   toUnknowns(liquid_mass_);
 }
 
+void StepProblem::markResolved(int axis, std::ptrdiff_t row, int width, std::uint8_t* resolved) const {
+  if (!resolved_[axis].empty()) {
+    std::copy_n(resolved_[axis].data() + row, width, resolved);
+    return;
+  }
+  const double* mass = coefficients.mass[axis].data() + row;
+#pragma omp simd
+  for (int i = 0; i < width; ++i) resolved[i] = mass[i] > 0.0 ? 1 : 0;
+}
+
 void StepProblem::toUnknowns(FaceField<double>& velocity) const {
   for (int a = 0; a < 3; ++a) {
     for (std::size_t f = 0; f < flux_share[a].size(); ++f) velocity[a][f] *= flux_share[a][f];
@@ -159,40 +169,38 @@ Vector6d StepProblem::enclosedImpulse(const EnclosedWeight& weight, const Eigen:
   return (dt / grid.h * gravity.dot(weight.offset)) * weight.coefficient;
 }
 
-std::string StepProblem::rightSide(const FaceField<double>& free_velocity, const std::vector<Vector6d>& free_twists,
+std::string StepProblem::rightSide(FaceField<double> free_velocity, const std::vector<Vector6d>& free_twists,
                                    const Eigen::Vector3d& gravity, StepVector& rhs) const {
   const Lattice& l = grid.lattice;
-  rhs.resize(l, bodies->size());
-  for (auto& force : rhs.bodies) force.setZero();
+  rhs.velocity = std::move(free_velocity);
+  for (int a = 0; a < 3; ++a) {
+    const double* mass = coefficients.mass[a].data();
+    const double* share = flux_share[a].empty() ? nullptr : flux_share[a].data();
+    double* u = rhs.velocity[a].data();
+#pragma omp parallel for simd schedule(static)
+    for (std::size_t i = 0; i < l.size; ++i) u[i] = mass[i] * (share == nullptr ? u[i] : share[i] * u[i]);
+  }
+  assignZero(l.size, rhs.pressure);
+  rhs.bodies.assign(bodies->size(), Vector6d::Zero());
   // What the prescribed motions do.
   std::vector<int> moved;
   for (std::size_t b = 0; b < bodies->size(); ++b) {
     if (free_index[b] < 0 && !free_twists[b].isZero(0.0)) moved.push_back(static_cast<int>(b));
   }
   if (!moved.empty()) {
-    StepVector prescribed;
+    StepVector prescribed, resistance;
     prescribed.resize(l, bodies->size());
     for (const int b : moved) prescribed.bodies[b] = free_twists[b];
-    op_.apply(prescribed, rhs);
-    for (auto& field : rhs.velocity) {
-      clearHalo(l, field);
-      for (double& r : field) r = -r;
-    }
-    clearHalo(l, rhs.pressure);
-    for (double& r : rhs.pressure) r = -r;
-    for (auto& force : rhs.bodies) force = -force;
-  } else {
-    for (auto& field : rhs.velocity) assignZero(l.size, field);
-    assignZero(l.size, rhs.pressure);
+    op_.apply(prescribed, resistance);
+    const auto take = [](const std::vector<double>& from, std::vector<double>& to) {
+      for (std::size_t i = 0; i < to.size(); ++i) to[i] -= from[i];
+    };
+    for (int a = 0; a < 3; ++a) take(resistance.velocity[a], rhs.velocity[a]);
+    take(resistance.pressure, rhs.pressure);
+    for (std::size_t b = 0; b < bodies->size(); ++b) rhs.bodies[b] -= resistance.bodies[b];
   }
-  for (int a = 0; a < 3; ++a) {
-    const double *mass = coefficients.mass[a].data(), *wanted = free_velocity[a].data();
-    const double* share = flux_share[a].empty() ? nullptr : flux_share[a].data();
-    double* out = rhs.velocity[a].data();
-#pragma omp parallel for simd schedule(static)
-    for (std::size_t i = 0; i < l.size; ++i) out[i] += mass[i] * (share == nullptr ? wanted[i] : share[i] * wanted[i]);
-    clearHalo(l, rhs.velocity[a]);
-  }
+  for (auto& field : rhs.velocity) clearHalo(l, field);
+  clearHalo(l, rhs.pressure);
   for (std::size_t i = 0; i < free.size(); ++i) rhs.bodies[free[i]] += solid_inertia[i] * free_twists[free[i]];
   for (const StickingLiquid& s : sticking) {
     const Vector6d row = velocityRow(s.axis, s.position, (*bodies)[s.body].p_WBcm);

@@ -37,10 +37,10 @@ class StepProblem {
                 const std::vector<double>& liquid_distance, double density, double viscosity, double step,
                 bool rates = false);
 
-  // The right side with r = 0. free_velocity: u*, gravity included. free_twists: v* of free bodies, the prescribed
-  // twist of the others. gravity acts on the liquid that sticks to bodies. Returns what is wrong, if there is no
+  // The right side with r = 0. free_velocity: u*, gravity included; its memory becomes that of rhs.velocity.
+  // free_twists: v* of free bodies, the prescribed twist of the others. gravity acts on the liquid that sticks to bodies. Returns what is wrong, if there is no
   // solution: a sealed region whose volume the prescribed motions would change.
-  [[nodiscard]] std::string rightSide(const FaceField<double>& free_velocity, const std::vector<Vector6d>& free_twists,
+  [[nodiscard]] std::string rightSide(FaceField<double> free_velocity, const std::vector<Vector6d>& free_twists,
                                       const Eigen::Vector3d& gravity, StepVector& rhs) const;
 
   // y = operator * x, inertia of the free bodies included; rows of the other bodies are zero, and so are the halos.
@@ -58,6 +58,8 @@ class StepProblem {
   bool isResolved(int axis, std::ptrdiff_t face) const {
     return resolved_[axis].empty() ? coefficients.mass[axis][face] > 0.0 : resolved_[axis][face] != 0;
   }
+  // The same of the `width` faces from `row` on: 1 or 0.
+  void markResolved(int axis, std::ptrdiff_t row, int width, std::uint8_t* resolved) const;
   // Liquid in a face's control volume: (rho h^3) liquidMass() u is its momentum.
   const FaceField<double>& liquidMass() const { return liquid_mass_[0].empty() ? coefficients.mass : liquid_mass_; }
 

@@ -81,7 +81,7 @@ void forEachRowInTurn(int end_j, int end_k, RowFunction&& f) {
 // One row of `count` fields, four entries at a time where their stencils cannot leave the field: those that are wanted.
 // one(i) -> its values; four(i, fours) -> whether it could.
 template <std::size_t count, class Wanted, class One, class FourFunction>
-void advectRow(const Lattice& l, int j, int k, int end, Wanted&& wanted, One&& one, FourFunction&& four,
+void advectRow(const Lattice& l, Wanted&& wanted, One&& one, FourFunction&& four,
                const std::array<double*, count>& out) {
   constexpr int kFour = 4;
   const auto oneByOne = [&](int begin, int stop) {
@@ -91,8 +91,8 @@ void advectRow(const Lattice& l, int j, int k, int end, Wanted&& wanted, One&& o
       for (std::size_t n = 0; n < count; ++n) out[n][i] = values[n];
     }
   };
-  if (j >= l.n[1] || k >= l.n[2] || l.n[0] < kFour) {
-    oneByOne(0, end);
+  if (l.n[0] < kFour) {
+    oneByOne(0, l.n[0]);
     return;
   }
   for (int i = 0; i < l.n[0]; i += kFour) {
@@ -108,10 +108,10 @@ void advectRow(const Lattice& l, int j, int k, int end, Wanted&& wanted, One&& o
       for (std::size_t n = 0; n < count; ++n) out[n][first + q] = values[n][q];
     }
   }
-  oneByOne(l.n[0], end);
 }
 
-// Values of `count` fields at the known faces of an axis, as advectRow(); faces in a wall keep those of `from`.
+// Values of `count` fields at the known faces of an axis, as advectRow(); faces in a wall keep those of `from`, and
+// beyond it there is nothing to advect.
 template <std::size_t count, class One, class FourFunction>
 void advectFaces(const Lattice& l, int axis, const std::vector<std::uint8_t>& known, One&& one, FourFunction&& four,
                  const std::array<const std::vector<double>*, count>& from,
@@ -133,10 +133,11 @@ void advectFaces(const Lattice& l, int axis, const std::vector<std::uint8_t>& kn
       for (int i = 0; i < l.faceEnd(0); ++i) keep(i);
       return;
     }
+    if (j >= l.n[1] || k >= l.n[2]) return;
     std::array<double*, count> out;
     for (std::size_t n = 0; n < count; ++n) out[n] = to[n]->data() + row;
     advectRow<count>(
-        l, j, k, l.faceEnd(0), [&](int i) { return mask[i] != 0 && !(axis == 0 && isWall(i)); },
+        l, [&](int i) { return mask[i] != 0 && !(axis == 0 && isWall(i)); },
         [&](int i) {
           return one(std::array<int, 3>{i, j, k});
         },
@@ -265,7 +266,7 @@ void advectCells(const MacGrid& grid, const FaceField<double>& velocity, const s
   forEachRowInTurn(l.n[1], l.n[2], [&](int j, int k) {
     const auto row = l.index(0, j, k);
     advectRow<1>(
-        l, j, k, l.n[0], [&](int i) { return std::abs(field[row + i]) < band; },
+        l, [&](int i) { return std::abs(field[row + i]) < band; },
         [&](int i) {
           return std::array<double, 1>{advectCell(l, velocity, field, {i, j, k}, scale)};
         },

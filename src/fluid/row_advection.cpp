@@ -124,6 +124,22 @@ Four limit(Four sum, Four lowest, Four highest) {
   return least(most(sum, lowest - slack), highest + slack);
 }
 
+// Extremes over n nodes along each axis. Pairs first: a comparison that waits for the one before takes longer than a sum.
+template <int n>
+inline void findRange(const double* u, const Lattice& l, Four& lowest, Four& highest) {
+  lowest = highest = at(u);
+  for (int k = 0; k < n; ++k) {
+    for (int j = 0; j < n; ++j) {
+      const double* p = u + j * l.stride[1] + k * l.stride[2];
+      for (int i = 0; i < n; i += 2) {
+        const Four first = at(p + i), second = at(p + i + 1);
+        lowest = least(lowest, least(first, second));
+        highest = most(highest, most(first, second));
+      }
+    }
+  }
+}
+
 template <bool limited>
 Four cubicTogether(const double* u, const Lattice& l, const Feet& feet) {
   Four w[3][4];
@@ -131,21 +147,22 @@ Four cubicTogether(const double* u, const Lattice& l, const Feet& feet) {
     cubicWeights(feet.x[d], feet.up[d], w[d]);
     u -= (feet.up[d][0] ? 1 : 2) * l.stride[d];
   }
-  const double infinite = std::numeric_limits<double>::infinity();
-  Four sum = all(0.0), lowest = all(infinite), highest = all(-infinite);
+  Four sum = all(0.0);
   for (int k = 0; k < 4; ++k) {
     Four plane = all(0.0);
     for (int j = 0; j < 4; ++j) {
       const double* p = u + j * l.stride[1] + k * l.stride[2];
-      const Four n0 = at(p), n1 = at(p + 1), n2 = at(p + 2), n3 = at(p + 3);
-      plane += w[1][j] * ((w[0][0] * n0 + w[0][1] * n1) + (w[0][2] * n2 + w[0][3] * n3));
-      // Pairs first: a comparison that waits for the one before would take longer than the sum.
-      if (limited) lowest = least(lowest, least(least(n0, n1), least(n2, n3)));
-      if (limited) highest = most(highest, most(most(n0, n1), most(n2, n3)));
+      plane += w[1][j] * ((w[0][0] * at(p) + w[0][1] * at(p + 1)) + (w[0][2] * at(p + 2) + w[0][3] * at(p + 3)));
     }
     sum += w[2][k] * plane;
   }
-  return limited ? limit(sum, lowest, highest) : sum;
+  if (!limited) return sum;
+  // Mostly the eight nodes around the foot tell that there is nothing to limit.
+  Four lowest, highest;
+  findRange<2>(u + l.stride[0] + l.stride[1] + l.stride[2], l, lowest, highest);
+  if (none((sum < lowest) | (sum > highest))) return sum;
+  findRange<4>(u, l, lowest, highest);
+  return limit(sum, lowest, highest);
 }
 
 template <bool limited>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 
 #include "fluid/advection.h"
@@ -96,13 +97,18 @@ void completeVelocity(const MacGrid& grid, const StepProblem& problem, const Sol
   const Lattice& l = grid.lattice;
   for (int a = 0; a < 3; ++a) {
     known[a].assign(l.size, 0);
+    const int width = l.faceEnd(0);
     forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
-      for (int i = 0; i < l.faceEnd(0); ++i) {
+      std::uint8_t* has = known[a].data() + row;
+      problem.markResolved(a, row, width, has);
+      if (usable != nullptr) {
+        const std::uint8_t* wanted = (*usable)[a].data() + row;
+        for (int i = 0; i < width; ++i) has[i] &= wanted[i];
+      }
+      if (std::memchr(has, 0, width) == nullptr) return;
+      for (int i = 0; i < width; ++i) {
+        if (has[i]) continue;
         const auto f = row + i;
-        if (problem.isResolved(a, f) && (usable == nullptr || (*usable)[a][f])) {
-          known[a][f] = 1;
-          continue;
-        }
         velocity[a][f] = 0.0;
         if (solids.distance[a][f] > 0.0) continue;
         const int owner = solids.owner[a][f];

@@ -92,7 +92,7 @@ StepReport Simulation::step() {
   Impl& m = *impl_;
   const int threads_before = omp_get_max_threads();
   if (m.scene.solver.threads > 0) omp_set_num_threads(m.scene.solver.threads);
-  m.before = m.state;
+  const std::vector<Wrench> last_liquid = m.state.mean_liquid, last_contact = m.state.mean_contact;
   m.state.mean_liquid.assign(m.state.bodies.size(), Wrench());
   m.state.mean_contact.assign(m.state.bodies.size(), Wrench());
   StepReport step;
@@ -109,17 +109,21 @@ StepReport Simulation::step() {
       if (m.secondOrder() && m.state.substeps < kFirstParts.size()) {
         dt = std::min(dt, kFirstParts[m.state.substeps] * m.scene.time_step);
       }
+      // A sub-step that fails leaves the state as it was; those before it have to be taken back.
+      if (step.substeps == 0 && left - dt > 1e-9 * m.scene.time_step) m.before = m.state;
       good = m.substep(dt, step);
       ++step.substeps;
       left -= dt;
     }
     if (good) {
       step.status = SolveStatus::kConverged;
-      m.state.step = m.before.step + 1;
+      ++m.state.step;
       m.state.time = static_cast<double>(m.state.step) * m.scene.time_step;
       m.measure(step);
     } else {
-      m.state = m.before;
+      if (step.substeps > 1) std::swap(m.state, m.before);
+      m.state.mean_liquid = last_liquid;
+      m.state.mean_contact = last_contact;
       m.prepareGeometry();
     }
   }

@@ -82,7 +82,7 @@ struct Simulation::Impl {
   BodyPlan planBodies(const StepWeights& w, const std::vector<char>& closing, std::vector<Contact>& contacts) const;
   void prepareSolve(const StepWeights& w);
   void advectLiquid(const StepWeights& w, FaceField<double>& free_velocity);
-  void guess(const StepWeights& w, const FaceField<double>& free_velocity);
+  void guess(const StepWeights& w, const FaceField<double>& free_velocity, CoupledState& start) const;
   CoupledReport solveWithLiquid(const StepWeights& w, const std::vector<Contact>& contacts, StepReport& report);
   void takeMeans(const StepWeights& w, const std::vector<Wrench>& liquid_before);
   void moveLiquid(const StepWeights& w, StepReport& report);
@@ -100,7 +100,8 @@ struct Simulation::Impl {
   FaceField<double> carried;  // velocity that the liquid at each face had at the start of the step
   // Within a sub-step only, kept for their memory.
   struct Scratch {
-    FaceField<double> free_velocity, velocity_before;
+    FaceField<double> free_velocity;
+    CoupledState other;  // until the solve has converged what is to come, from then on what was
     std::array<std::vector<std::uint8_t>, 3> known_before, known;
   } scratch;
   CoupledSystem system;
@@ -113,7 +114,7 @@ struct Simulation::Impl {
   double sticking_energy = 0.0;  // J
   Eigen::Vector3d sticking_momentum = Eigen::Vector3d::Zero();
   SimulationState state;
-  SimulationState before;  // the last output step
+  SimulationState before;  // the last output step, if this one takes several sub-steps
   StepReport report;
 };
 

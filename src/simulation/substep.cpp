@@ -75,11 +75,12 @@ void Simulation::Impl::advectLiquid(const StepWeights& w, FaceField<double>& fre
 }
 
 // The solve starts from what there is after another step of the same accelerations.
-void Simulation::Impl::guess(const StepWeights& w, const FaceField<double>& free_velocity) {
-  state.coupled.twists.resize(state.bodies.size());
+void Simulation::Impl::guess(const StepWeights& w, const FaceField<double>& free_velocity, CoupledState& start) const {
+  start = state.coupled;
+  start.twists.resize(state.bodies.size());
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
-    state.coupled.twists[b] = state.bodies[b].twist;
-    if (w.order == 2) state.coupled.twists[b] += w.dt * state.body_acceleration[b];
+    start.twists[b] = state.bodies[b].twist;
+    if (w.order == 2) start.twists[b] += w.dt * state.body_acceleration[b];
   }
   if (w.order == 1 || !hasLiquid()) return;
   for (int a = 0; a < 3; ++a) {
@@ -87,7 +88,7 @@ void Simulation::Impl::guess(const StepWeights& w, const FaceField<double>& free
 #pragma omp parallel for schedule(static)
     for (std::size_t i = 0; i < free_velocity[a].size(); ++i) {
       const double part = free_velocity[a][i] - carried[a][i] - falls;
-      if (state.known[a][i]) state.coupled.velocity[a][i] = carried[a][i] + part / w.carry;
+      if (state.known[a][i]) start.velocity[a][i] = carried[a][i] + part / w.carry;
     }
   }
 }
@@ -116,17 +117,22 @@ CoupledReport Simulation::Impl::solveWithLiquid(const StepWeights& w, const std:
   CoupledOptions options;
   options.tolerance = scene.solver.tolerance * (state.started ? 1.0 : kFirstTolerance);
   options.maximum_iterations = scene.solver.maximum_iterations;
-  guess(w, free_velocity);
-  const auto solve = [&](const CoupledOptions& with) {
-    return system.solve(free_velocity, plan.free_twists, scaled, laws.of(contacts), scene.gravity, with, state.coupled);
+  CoupledState& solution = scratch.other;
+  guess(w, free_velocity, solution);
+  const auto solve = [&](FaceField<double>& right, const CoupledOptions& with) {
+    return system.solve(right, plan.free_twists, scaled, laws.of(contacts), scene.gravity, with, solution);
   };
-  if (!nonNewtonian()) return solve(options);
+  if (!nonNewtonian()) return solve(free_velocity, options);
   RheologyReport rheology;
+  const auto solveAgain = [&](const CoupledOptions& with) {
+    FaceField<double> right = free_velocity;
+    return solve(right, with);
+  };
   const CoupledReport solved =
       solveNonNewtonian(system, viscosity_law, state.typical_viscosity, liquid.rheology.maximum_iterations,
-                        scene.solver.tolerance, options, solve, state.coupled, rheology);
+                        scene.solver.tolerance, options, solveAgain, solution, rheology);
   step.rheology_iterations += rheology.iterations;
-  state.typical_viscosity = rheology.typical_viscosity;
+  if (solved.status == CoupledReport::Status::kConverged) state.typical_viscosity = rheology.typical_viscosity;
   return solved;
 }
 
@@ -177,7 +183,7 @@ void Simulation::Impl::moveLiquid(const StepWeights& w, StepReport& step) {
   }
   if (w.order == 2) {
     if (hasSurface()) {
-      FaceField<double>& mean = scratch.velocity_before;
+      FaceField<double>& mean = scratch.other.velocity;
       for (int a = 0; a < 3; ++a) {
 #pragma omp parallel for simd schedule(static)
         for (std::size_t i = 0; i < grid.lattice.size; ++i) {
@@ -208,8 +214,6 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
     for (const Contact& contact : contacts) step.penetration = std::max(step.penetration, -contact.gap);
     plan = planBodies(w, closing, contacts);
   }
-  const std::vector<Wrench> liquid_before = state.coupled.liquid;
-  if (w.order == 2 && hasSurface()) scratch.velocity_before = state.coupled.velocity;
   const CoupledReport solved = solveWithLiquid(w, contacts, step);
   step.iterations += solved.iterations;
   step.liquid_solves += solved.solves;
@@ -223,6 +227,7 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
     step.message = solved.message;
     return false;
   }
+  std::swap(state.coupled, scratch.other);
   state.started = true;
   sticking_energy = system.stickingEnergy(state.coupled.twists);
   sticking_momentum = system.stickingMomentum(state.coupled.twists);
@@ -237,7 +242,7 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
     return laws.of(contact.body_a, contact.body_b).friction > 0.0;
   });
 
-  takeMeans(w, liquid_before);
+  takeMeans(w, scratch.other.liquid);
   if (w.order == 2) {
     const bool rebound = std::any_of(contacts.begin(), contacts.end(), [&](const Contact& contact) {
       return closing[contact.body_a] && laws.of(contact.body_a, contact.body_b).restitution > 0.0;

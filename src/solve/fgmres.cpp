@@ -7,6 +7,7 @@
 
 #include "solve/assign_zero.h"
 #include "solve/blocked_sum.h"
+#include "solve/kernel_work.h"
 
 namespace monolith {
 namespace {
@@ -67,6 +68,7 @@ void multiply(const std::vector<std::vector<Real>>& basis, int count, const std:
   const auto size = static_cast<std::ptrdiff_t>(w.size());
   const std::ptrdiff_t blocks = (size + kSumBlock - 1) / kSumBlock;
   Eigen::MatrixXd sums(2 * count, blocks);
+  countWork(w.size(), 4.0 * count, sizeof(Real) * (count + 1.0));
 #pragma omp parallel for schedule(static)
   for (std::ptrdiff_t b = 0; b < blocks; ++b) {
     const std::ptrdiff_t begin = b * kSumBlock, length = std::min(size - begin, kSumBlock);
@@ -90,6 +92,8 @@ void multiply(const std::vector<std::vector<Real>>& basis, int count, const std:
 // w -= sum_i h[i] v_i; returns |w|^2. One number and 2 flops an entry and vector, bound by memory.
 template <class Real>
 double subtract(const std::vector<std::vector<Real>>& basis, const Eigen::VectorXd& h, std::vector<Real>& w) {
+  const auto count = static_cast<double>(h.size());
+  countWork(w.size(), 2.0 * count + 2.0, sizeof(Real) * (count + 2.0));
   return blockedSum<double>(w.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     Real* to = w.data();
     for (Eigen::Index i = 0; i < h.size(); i += 2) {
@@ -107,6 +111,8 @@ double subtract(const std::vector<std::vector<Real>>& basis, const Eigen::Vector
 template <class Real>
 void combine(const std::vector<std::vector<Real>>& z, const Eigen::VectorXd& coefficient, std::vector<double>& x) {
   const auto size = static_cast<std::ptrdiff_t>(x.size());
+  const auto count = static_cast<double>(coefficient.size());
+  countWork(x.size(), 2.0 * count, sizeof(Real) * count + 2.0 * sizeof(double));
 #pragma omp parallel for schedule(static)
   for (std::ptrdiff_t begin = 0; begin < size; begin += kSumBlock) {
     const auto end = std::min(size, begin + kSumBlock);
@@ -122,6 +128,7 @@ void combine(const std::vector<std::vector<Real>>& z, const Eigen::VectorXd& coe
 template <class From, class To>
 void scaleInto(const std::vector<From>& x, double a, std::vector<To>& y) {
   y.resize(x.size());
+  countWork(x.size(), 1.0, sizeof(From) + sizeof(To));
 #pragma omp parallel for simd schedule(static)
   for (std::size_t i = 0; i < x.size(); ++i) y[i] = static_cast<To>(a * x[i]);
 }
@@ -173,6 +180,7 @@ const std::vector<float>& Fgmres::firstDirection(const KrylovMaps& maps, const s
 
 double Fgmres::residual(const KrylovMaps& maps, const std::vector<double>& b, std::vector<double>& x) {
   maps.apply(x, work_);
+  countWork(b.size(), 3.0, 3.0 * sizeof(double));
   return std::sqrt(blockedSum<double>(b.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     double sum = 0.0;
 #pragma omp simd reduction(+ : sum)
@@ -269,10 +277,11 @@ KrylovReport Fgmres::solve(const KrylovMaps& maps, const std::vector<double>& b,
   const double target = std::max(options.absolute_tolerance, options.relative_tolerance * report.residual);
   report.converged = report.residual <= target;
   bool single = true;
+  int length = std::min(options.shortest_cycle, options.longest_cycle);
   while (!report.converged && report.iterations < options.maximum_iterations && std::isfinite(report.residual)) {
     const double wanted = kMargin * target / report.residual;
     const double goal = single ? std::max(wanted, kLeastReduction) : wanted;
-    const int most = std::min(options.restart, options.maximum_iterations - report.iterations);
+    const int most = std::min(length, options.maximum_iterations - report.iterations);
     const int used = single ? cycle(maps, report.residual, goal, most, first_known, single_, x)
                             : cycle(maps, report.residual, goal, most, false, double_, x);
     first_known = false;
@@ -282,8 +291,10 @@ KrylovReport Fgmres::solve(const KrylovMaps& maps, const std::vector<double>& b,
     report.converged = report.residual <= target;
     if (report.converged) continue;
     if (used == most) {
-      // A whole cycle for little: perhaps it is the precision.
-      single = single && report.residual <= kPoorCycle * last;
+      const bool poor = report.residual > kPoorCycle * last;
+      // A long cycle for little: perhaps it is the precision.
+      if (poor && length == options.longest_cycle) single = false;
+      if (poor) length = std::min(2 * length, options.longest_cycle);
     } else if (single) {
       // It believed that it had arrived, or gave up: what is left is its round-off.
       single = report.residual <= kLost * goal * last;

@@ -16,7 +16,10 @@ struct KrylovOptions {
   double absolute_tolerance = 0.0;  // on |b - A x|_2
   double relative_tolerance = 0.0;  // or so much of what it is at first, if that is more
   int maximum_iterations = 200;
-  int restart = 60;  // directions kept; memory grows only as they are used
+  // Directions kept. Cycles are short, which takes little memory and less to orthogonalise, until one gains too little:
+  // those after it are twice as long.
+  int shortest_cycle = 12;
+  int longest_cycle = 60;
 };
 
 struct KrylovReport {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "solve/assign_zero.h"
+#include "solve/kernel_work.h"
 #include "solve/staggered_transfer.h"
 
 namespace monolith {
@@ -231,7 +232,8 @@ void PressureMultigrid::invert(const Network& network, const Level& level) {
 
 namespace {
 
-// L x of a block. 20 flops over the pattern's 8 and the field's 7 loads a cell.
+// L x of a block, over the pattern's 8 and the field's 7 loads a cell.
+constexpr double kNetworkFlops = 19.0;
 inline void network(const Lattice& l, const float* k, const float* x, float* out) {
   const auto sy = l.stride[1], sz = l.stride[2];
 #pragma omp simd
@@ -245,8 +247,9 @@ inline void network(const Lattice& l, const float* k, const float* x, float* out
 
 }  // namespace
 
-// Streams 12 bytes a cell.
+// Streams x, b and r: 12 bytes a cell for 20 flops.
 void PressureMultigrid::residual(Level& level, float* r) const {
+  countWork(level.blocks.lanes(), kNetworkFlops + 1.0, 3.0 * sizeof(float));
   const float *x = level.x.data(), *b = level.right;
   level.blocks.forEach([&](int, std::ptrdiff_t c, const float* k) {
     float Lx[kLanes];
@@ -256,7 +259,7 @@ void PressureMultigrid::residual(Level& level, float* r) const {
   });
 }
 
-// A step streams 20 bytes a cell for 26 flops: bound by the second cache or memory.
+// A step streams x, b, d (read and written) and next: 20 bytes a cell for 25 flops: bound by the second cache or memory.
 void PressureMultigrid::smooth(Level& level, int degree, bool from_zero) const {
   ChebyshevRecurrence recurrence(level.range);
   const float* b = level.right;
@@ -266,6 +269,7 @@ void PressureMultigrid::smooth(Level& level, int degree, bool from_zero) const {
     const float keep = recurrence.keep(), scale = recurrence.scale();
     if (from_zero && step == 0) {
       float* x = level.x.data();
+      countWork(level.blocks.lanes(), 2.0, 3.0 * sizeof(float));
       level.blocks.forEach([&](int, std::ptrdiff_t c, const float* k) {
 #pragma omp simd
         for (int i = 0; i < kLanes; ++i) x[c + i] = d[c + i] = scale * k[kInverse * kLanes + i] * b[c + i];
@@ -273,6 +277,7 @@ void PressureMultigrid::smooth(Level& level, int degree, bool from_zero) const {
     } else {
       const float* x = level.x.data();
       float* next = level.next.data();
+      countWork(level.blocks.lanes(), kNetworkFlops + 6.0, 5.0 * sizeof(float));
       level.blocks.forEach([&](int, std::ptrdiff_t c, const float* k) {
         float Lx[kLanes];
         network(level.lattice, k, x + c, Lx);
@@ -297,6 +302,7 @@ void PressureMultigrid::descend(std::size_t index) {
     }
     const auto count = static_cast<Eigen::Index>(coarsest_cells_.size());
     Eigen::VectorXf b(count);
+    countWork(static_cast<std::size_t>(count * count), 2.0, sizeof(float));
     for (Eigen::Index i = 0; i < count; ++i) b[i] = level.right[coarsest_cells_[i]];
     const Eigen::VectorXf x = inverse_ * b;
     for (Eigen::Index i = 0; i < count; ++i) level.x[coarsest_cells_[i]] = x[i];

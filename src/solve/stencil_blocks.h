@@ -76,6 +76,7 @@ class StencilBlocks {
   }
 
   std::size_t blocks() const { return blocks_.size(); }
+  std::size_t lanes() const { return blocks_.size() * kLanes; }
   std::size_t patterns() const { return values_.size() / (Count * kLanes); }
   std::size_t bytes() const { return blocks_.size() * sizeof(Block) + values_.size() * sizeof(Real); }
 
@@ -131,7 +132,7 @@ class StencilBlocks {
   template <class FillRow>
   void buildPlane(int k, const std::vector<int>& first, FillRow&& fill, const SteadyRows* kept, const Last& before,
                   Plane& plane) const;
-  void merge(const std::vector<Plane>& planes, int components, const Last& before);
+  void merge(std::vector<Plane>& planes, int components, std::size_t patterns_before);
   void findLost(int components, const Last& before);
 
   // Some of a pattern's words tell most patterns apart; which are the same is seen from all of them.
@@ -178,14 +179,16 @@ void StencilBlocks<Real, Count>::build(const Lattice& l, const std::vector<int>&
   const int components = static_cast<int>(first.size());
   anew_ = build_ == 0 || lattice_.n != l.n || lattice_.periodic != l.periodic;
   const bool keeps = !anew_ && wouldKeep(steady);
-  const Last last{std::move(blocks_), std::move(values_), std::move(row_begin_)};
+  Last last{std::move(blocks_), std::move(values_), std::move(row_begin_)};
   lattice_ = l;
   ++build_;
   generation_ = steady != nullptr ? steady->generation() : -2;
   std::vector<Plane> planes(l.faceEnd(2));
 #pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int k = 0; k < l.faceEnd(2); ++k) buildPlane(k, first, fill, keeps ? steady : nullptr, last, planes[k]);
-  merge(planes, components, last);
+  const std::size_t patterns_before = last.patterns();
+  last.values = {};
+  merge(planes, components, patterns_before);
   findLost(components, last);
 }
 
@@ -245,17 +248,20 @@ void StencilBlocks<Real, Count>::buildPlane(int k, const std::vector<int>& first
   }
 }
 
-// One after the other, so that patterns are numbered the same way on any number of threads.
+// One after the other, so that patterns are numbered the same way on any number of threads. Uses up the planes.
 template <class Real, int Count>
-void StencilBlocks<Real, Count>::merge(const std::vector<Plane>& planes, int components, const Last& before) {
+void StencilBlocks<Real, Count>::merge(std::vector<Plane>& planes, int components, std::size_t patterns_before) {
   const int rows = lattice_.faceEnd(1);
   blocks_.clear();
   segments_.clear();
   values_.clear();
+  std::size_t most = 0;
+  for (const Plane& plane : planes) most += plane.values.size();
+  values_.reserve(most);
   row_begin_.assign(1, 0);
   std::unordered_map<std::string_view, std::int32_t, PatternHash> known;
-  std::vector<std::int32_t> number, renumbered(before.patterns(), -1);
-  for (const Plane& plane : planes) {
+  std::vector<std::int32_t> number, renumbered(patterns_before, -1);
+  for (Plane& plane : planes) {
     number.clear();
     for (std::size_t p = 0; p < plane.origin.size(); ++p) {
       const std::int32_t origin = plane.origin[p];
@@ -263,9 +269,15 @@ void StencilBlocks<Real, Count>::merge(const std::vector<Plane>& planes, int com
       if (found < 0) {
         const Real* values = plane.values.data() + p * kSize;
         const std::string_view text(reinterpret_cast<const char*>(values), kSize * sizeof(Real));
-        const auto [entry, fresh] = known.try_emplace(text, values_.size() / kSize);
-        if (fresh) values_.insert(values_.end(), values, values + kSize);
-        found = entry->second;
+        const auto entry = known.find(text);
+        if (entry != known.end()) {
+          found = entry->second;
+        } else {
+          found = static_cast<std::int32_t>(values_.size() / kSize);
+          values_.insert(values_.end(), values, values + kSize);  // there is room: none moves, and the key stays
+          known.emplace(std::string_view(reinterpret_cast<const char*>(values_.data() + found * kSize), text.size()),
+                        found);
+        }
         if (origin >= 0) renumbered[origin] = found;
       }
       number.push_back(found);
@@ -277,6 +289,7 @@ void StencilBlocks<Real, Count>::merge(const std::vector<Plane>& planes, int com
       const auto end = static_cast<std::int32_t>(blocks_.size());
       if (end > begin) segments_.push_back({component, begin, end});
     }
+    plane = {};
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "solve/assign_zero.h"
+#include "solve/kernel_work.h"
 
 namespace monolith {
 namespace {
@@ -17,8 +18,9 @@ struct Others {
 };
 constexpr Others kOthers[3] = {{{1, 2}, {0, 1}, {0, 0}}, {{0, 2}, {0, 2}, {1, 0}}, {{0, 1}, {1, 2}, {1, 1}}};
 
-// A U of the lanes from f on. Per face 21 flops over the pattern's 11 and the fields' 15 loads, all but three of which
-// hit the first cache: bound by its load ports.
+// A U of the lanes from f on. Over the pattern's 11 and the fields' 15 loads a face, all but three of which hit the first
+// cache: bound by its load ports.
+constexpr double kMomentumFlops = 31.0;
 template <class Real>
 inline void momentum(const Lattice& l, int a, std::ptrdiff_t f, const Real* k, const Faces<const Real>& U, Real* out) {
   const auto sa = l.stride[a];
@@ -178,10 +180,11 @@ void buildCellBlocks(const StaggeredCoefficients<From>& c, CellBlocks<Real>& out
   }, steady);
 }
 
-// Streams U, p and y: 28 bytes a cell and pass in single precision; see momentum() for the loads.
+// Streams U, p and y: 28 bytes a cell in single precision; see momentum() for the loads.
 template <class Real>
 void applyMomentum(const Lattice& l, const FaceBlocks<Real>& blocks, bool viscous, const Faces<const Real>& U,
                    const Real* p, const Faces<Real>& y) {
+  countWork(blocks.lanes(), (viscous ? kMomentumFlops : 1.0) + 3.0, sizeof(Real) * (2.0 + 1.0 / 3.0));
   blocks.forEach([&](int a, std::ptrdiff_t f, const Real* k) {
     Real* out = y[a] + f;
     if (viscous) {
@@ -200,11 +203,13 @@ void applyMomentum(const Lattice& l, const FaceBlocks<Real>& blocks, bool viscou
   });
 }
 
-// 20 bytes and 13 flops a cell in single precision: bound by the second cache or memory.
+// Streams U, y and perhaps g: 16 or 20 bytes a cell in single precision for 12 or 13 flops: bound by the second cache or
+// memory.
 template <class Real>
 void applyDivergence(const Lattice& l, const CellBlocks<Real>& blocks, const Faces<const Real>& U, Real factor,
                      const Real* g, Real* y) {
   const auto sy = l.stride[1], sz = l.stride[2];
+  countWork(blocks.lanes(), g != nullptr ? 13.0 : 12.0, sizeof(Real) * (g != nullptr ? 5.0 : 4.0));
   blocks.forEach([&](int, std::ptrdiff_t c, const Real* k) {
     const Real *u = U[0] + c, *v = U[1] + c, *w = U[2] + c;
     Real* out = y + c;
@@ -225,10 +230,11 @@ void applyDivergence(const Lattice& l, const CellBlocks<Real>& blocks, const Fac
   });
 }
 
-// Streams x, b, d (read and written) and next: 60 bytes and 75 flops a cell. In cache bound by loads, beyond by memory.
+// Streams x, b, d (read and written) and next: 60 bytes a cell for 111 flops. In cache bound by loads, beyond by memory.
 void chebyshevStep(const Lattice& l, const FaceBlocks<float>& blocks, const Faces<const float>& x,
                    const Faces<const float>& b, float keep, float scale, const Faces<float>& d,
                    const Faces<float>& next) {
+  countWork(blocks.lanes(), kMomentumFlops + 6.0, 5.0 * sizeof(float));
   blocks.forEach([&](int a, std::ptrdiff_t f, const float* k) {
     float Ax[kLanes];
     momentum(l, a, f, k, x, Ax);
@@ -245,6 +251,7 @@ void chebyshevStep(const Lattice& l, const FaceBlocks<float>& blocks, const Face
 // 36 bytes a cell; bound by memory.
 void chebyshevStart(const FaceBlocks<float>& blocks, const Faces<const float>& b, float scale, const Faces<float>& d,
                     const Faces<float>& x) {
+  countWork(blocks.lanes(), 2.0, 3.0 * sizeof(float));
   blocks.forEach([&](int a, std::ptrdiff_t f, const float* k) {
 #pragma omp simd
     for (int i = 0; i < kLanes; ++i) {
@@ -253,9 +260,10 @@ void chebyshevStart(const FaceBlocks<float>& blocks, const Faces<const float>& b
   });
 }
 
-// 36 bytes and 69 flops a cell.
+// 36 bytes a cell for 99 flops: as chebyshevStep().
 void transferredResidual(const Lattice& l, const FaceBlocks<float>& blocks, const Faces<const float>& x,
                          const Faces<const float>& b, const Faces<float>& r) {
+  countWork(blocks.lanes(), kMomentumFlops + 2.0, 3.0 * sizeof(float));
   blocks.forEach([&](int a, std::ptrdiff_t f, const float* k) {
     float Ax[kLanes];
     momentum(l, a, f, k, x, Ax);
@@ -267,6 +275,7 @@ void transferredResidual(const Lattice& l, const FaceBlocks<float>& blocks, cons
 // 28 bytes a cell; bound by memory.
 void project(const Lattice& l, const FaceBlocks<float>& blocks, const Faces<const float>& x, const float* p,
              const Faces<float>& y) {
+  countWork(blocks.lanes(), 3.0, sizeof(float) * (2.0 + 1.0 / 3.0));
   blocks.forEach([&](int a, std::ptrdiff_t f, const float* k) {
     const auto sa = l.stride[a];
 #pragma omp simd

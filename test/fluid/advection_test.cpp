@@ -91,7 +91,10 @@ TEST(Advection, RowsMoveAsTheirFacesDo) {
         for (int j = 0; j < l.faceEnd(1); ++j) {
           for (int i = 0; i < l.faceEnd(0); ++i) {
             const int at[3] = {i, j, k};
+            bool beyond = false;  // the tank
+            for (int d = 0; d < 3; ++d) beyond = beyond || (d != a && at[d] == l.n[d]);
             const bool in_wall = !l.periodic[a] && (at[a] == 0 || at[a] == l.n[a]);
+            if (beyond) continue;
             const double expected = in_wall ? u[a][l.index(i, j, k)] : advectFace(l, u, a, {i, j, k}, 1.0);
             EXPECT_NEAR(moved[a][l.index(i, j, k)], expected, 1e-13) << a << " " << i << " " << j << " " << k;
             largest = std::max(largest, std::abs(expected));

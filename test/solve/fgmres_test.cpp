@@ -55,7 +55,7 @@ TEST_F(FgmresTest, SolvesAnIndefiniteSystemAndReportsTheTrueResidual) {
   KrylovOptions options;
   options.absolute_tolerance = 1e-9;
   options.maximum_iterations = 2000;
-  options.restart = 130;
+  options.shortest_cycle = options.longest_cycle = 130;
   const KrylovReport report = Fgmres().solve(maps(), rhs, x, options);
   EXPECT_TRUE(report.converged);
   EXPECT_LE(residual(x), 1e-9);
@@ -80,7 +80,7 @@ TEST_F(FgmresTest, GoesOnFromAKnownFirstDirection) {
   KrylovOptions options;
   options.absolute_tolerance = 1e-8;
   options.maximum_iterations = 500;
-  options.restart = 130;
+  options.shortest_cycle = options.longest_cycle = 130;
   std::vector<double> x(rhs.size(), 0.003), same = x;
   const KrylovReport report = Fgmres().solve(maps(), rhs, x, options);
   // Of the first direction all but the last ten entries are told; how often the whole of it is asked for counts.
@@ -110,7 +110,7 @@ TEST_F(FgmresTest, StaysOrthogonalInSinglePrecision) {
   std::vector<double> x(rhs.size(), 0.0);
   KrylovOptions options;
   options.absolute_tolerance = 1e-4 * residual(x);
-  options.restart = 121;
+  options.shortest_cycle = options.longest_cycle = 121;
   const KrylovReport report = Fgmres().solve(maps(), rhs, x, options);
   EXPECT_TRUE(report.converged);
   EXPECT_LE(report.iterations, 121);

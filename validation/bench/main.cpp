@@ -21,8 +21,7 @@ Row measure(const Case& wanted, const Options& options, double stream) {
   if (!row.accuracy.good) return row;
   row.steps = inChild<StepFigures>([&] { return measureSteps(wanted, row.accuracy.tolerance, options.repetitions); });
   if (!row.steps.good) return row;
-  const double touched = row.steps.bytes_per_cell * std::pow(wanted.size, 3) * row.steps.iterations;
-  row.bandwidth = touched / (1e-3 * row.steps.solve_ms);
+  row.bandwidth = row.steps.streamed / (1e-3 * row.steps.solve_ms);
   row.bandwidth_share = row.bandwidth / stream;
   if (wanted.contacts > 0) {
     Case apart = wanted;

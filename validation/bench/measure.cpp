@@ -20,6 +20,7 @@
 #include "simulation/contact_laws.h"
 #include "simulation/liquid_state.h"
 #include "simulation/simulation.h"
+#include "solve/kernel_work.h"
 
 namespace monolith::bench {
 namespace {
@@ -83,7 +84,8 @@ struct FirstStep {
     CoupledOptions options;
     options.tolerance = tolerance;
     options.maximum_iterations = scene.solver.maximum_iterations;
-    return system.solve(free_velocity, twists, contacts, ContactLaws(scene).of(contacts), scene.gravity, options,
+    FaceField<double> right = free_velocity;
+    return system.solve(right, twists, contacts, ContactLaws(scene).of(contacts), scene.gravity, options,
                         state);
   }
 
@@ -221,7 +223,10 @@ StepFigures measureSteps(const Case& wanted, double tolerance, int repetitions) 
           kPush * scene.bodies[b].mass * scene.gravity.norm() * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0);
       simulation.setWrench(static_cast<int>(b), push);
     }
-    if (i == 0) cpu = cpuSeconds();
+    if (i == 0) {
+      cpu = cpuSeconds();
+      kernelWork() = KernelWork();
+    }
     const StepReport report = simulation.step();
     if (!report.committed()) {
       copyMessage(report.message, out.message);
@@ -230,6 +235,8 @@ StepFigures measureSteps(const Case& wanted, double tolerance, int repetitions) 
     if (i >= 0) reports.push_back(report);
   }
   out.cpu_ms = 1e3 * (cpuSeconds() - cpu) / repetitions;
+  out.flops = kernelWork().flops / repetitions;
+  out.streamed = kernelWork().bytes / repetitions;
   out.bytes_per_cell = (memory("VmHWM:") - baseline) / std::pow(wanted.size, 3);
   out.bodies = static_cast<int>(scene.bodies.size());
   out.contacts = reports.back().model.contacts;

@@ -31,7 +31,8 @@ struct StepFigures {
   double cpu_ms = 0.0;         // of all threads, mean
   double iterations = 0.0;     // mean
   double liquid_solves = 0.0;  // mean
-  double bytes_per_cell = 0.0;
+  double flops = 0.0, streamed = 0.0;  // of the solve's kernels, mean: solve/kernel_work.h; bytes
+  double bytes_per_cell = 0.0;         // memory at its peak
   int bodies = 0;
   int contacts = 0;
   char message[200] = "";

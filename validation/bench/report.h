@@ -13,8 +13,8 @@ struct Row {
   Case wanted;
   Accuracy accuracy;
   StepFigures steps;
-  double bandwidth = 0.0;        // bytes/s, of the solve
-  double bandwidth_share = 0.0;  // of the machine's, measured in the same run
+  double bandwidth = 0.0;        // bytes/s that the solve's kernels stream, from caches or memory
+  double bandwidth_share = 0.0;  // of what the machine's memory gives, measured in the same run
   double speedup = 0.0;          // over the other solver, at equal true error; 0: none asked for
   std::string against;
   double against_ms = 0.0;
