@@ -10,5 +10,7 @@ namespace monolith {
 bool runSolvers();
 // What each part of the model costs.
 bool runBlocks();
+// Speed and error of the demo against its step, tolerance and cell width.
+bool runPace();
 
 }  // namespace monolith

@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
   const std::map<std::string, std::function<bool()>> cases = {
       {"solvers", runSolvers},
       {"blocks", runBlocks},
+      {"pace", runPace},
   };
   if (argc < 2) {
     std::printf("usage: monolith_cases CASE...\ncases:");

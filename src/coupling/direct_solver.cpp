@@ -42,7 +42,7 @@ void DirectSolver::Impl::prepare(StepProblem& p) {
   std::vector<Eigen::Index> given_back;
   for (const PressureRegion& region : p.regions) {
     if (!region.sealed) continue;
-    const auto place = std::find(s.pressure_cells.begin(), s.pressure_cells.end(), region.cells.front());
+    const auto place = std::find(s.pressure_cells.begin(), s.pressure_cells.end(), region.runs.front().begin);
     const Eigen::Index i = s.stresses + (place - s.pressure_cells.begin());
     A.coeffRef(i, i) += kPin;
     if (!region.null_mode) given_back.push_back(i);

@@ -153,17 +153,15 @@ std::vector<PressureRegion> findPressureRegions(const StaggeredCoefficients<doub
     if (runs.openToAir(run)) regions[id_of[run]].sealed = false;
   }
   if (std::any_of(regions.begin(), regions.end(), [](const PressureRegion& region) { return region.sealed; })) {
-    if (regions.size() == 1) regions[0].cells.reserve(l.cells());
     runs.forEachRowOfCells([&](std::ptrdiff_t row, int, int) {
       for (auto cell = row; cell < row + l.n[0];) {
         const int run = runs.of(cell);
         auto end = cell + 1;
         while (end < row + l.n[0] && runs.of(end) == run) ++end;
         if (run >= 0 && regions[id_of[run]].sealed) {
-          std::vector<std::int32_t>& cells = regions[id_of[run]].cells;
-          const std::size_t before = cells.size();
-          cells.resize(before + (end - cell));
-          std::iota(cells.begin() + before, cells.end(), static_cast<std::int32_t>(cell));
+          PressureRegion& region = regions[id_of[run]];
+          region.runs.push_back({static_cast<std::int32_t>(cell), static_cast<std::int32_t>(end)});
+          region.cells += static_cast<std::size_t>(end - cell);
         }
         cell = end;
       }

@@ -3,6 +3,7 @@
 // constant, and its solids must not change its volume (DESIGN 1.5).
 
 #include <cstdint>
+#include <numeric>
 #include <vector>
 
 #include "coupling/stokes_coefficients.h"
@@ -10,9 +11,30 @@
 namespace monolith {
 
 struct PressureRegion {
-  bool sealed = false;              // no face towards the air
-  bool null_mode = false;           // sealed, and no free body feels the constant: it is in the operator's null space
-  std::vector<std::int32_t> cells;  // of sealed regions only
+  // Cells next to each other along x.
+  struct Run {
+    std::int32_t begin, end;
+  };
+
+  bool sealed = false;     // no face towards the air
+  bool null_mode = false;  // sealed, and no free body feels the constant: it is in the operator's null space
+  std::vector<Run> runs;   // of sealed regions only
+  std::size_t cells = 0;   // in them
+
+  // f(begin, end) for every run, shared among threads.
+  template <class RunFunction>
+  void forEachRun(RunFunction&& f) const {
+#pragma omp parallel for schedule(static) if (cells >= kSizeWorthSharing)
+    for (std::size_t i = 0; i < runs.size(); ++i) f(runs[i].begin, runs[i].end);
+  }
+  // Sum of f(begin, end): the same bits at any number of threads.
+  template <class RunFunction>
+  double sum(RunFunction&& f) const {
+    std::vector<double> sums(runs.size());
+#pragma omp parallel for schedule(static) if (cells >= kSizeWorthSharing)
+    for (std::size_t i = 0; i < runs.size(); ++i) sums[i] = f(runs[i].begin, runs[i].end);
+    return std::accumulate(sums.begin(), sums.end(), 0.0);
+  }
 };
 
 // `moves[b]`: body b's twist is an unknown.

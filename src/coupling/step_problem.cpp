@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <sstream>
 
 #include "coupling/fraction_coefficients.h"
 #include "coupling/row_kinds.h"
-#include "solve/assign_zero.h"
+#include "solve/whole_fields.h"
 #include "solve/velocity_multigrid.h"
 
 namespace monolith {
@@ -217,20 +218,24 @@ std::string StepProblem::rightSide(FaceField<double> free_velocity, const std::v
 std::string StepProblem::balanceSealedRegions(std::vector<double>& flux) const {
   for (const PressureRegion& region : regions) {
     if (!region.null_mode) continue;
-    double sum = 0.0, size = 0.0;
-    for (const auto c : region.cells) {
-      sum += flux[c];
-      size += std::abs(flux[c]);
-    }
+    const double sum = region.sum([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+      return std::accumulate(flux.begin() + begin, flux.begin() + end, 0.0);
+    });
+    const double size = region.sum([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+      double part = 0.0;
+#pragma omp simd reduction(+ : part)
+      for (auto c = begin; c < end; ++c) part += std::abs(flux[c]);
+      return part;
+    });
     if (std::abs(sum) > kFluxTolerance * size && size > 1e-12) {
       std::ostringstream text;
-      text << "a sealed region of liquid (" << region.cells.size() << " cells, "
-           << static_cast<double>(region.cells.size()) * grid.cellVolume()
+      text << "a sealed region of liquid (" << region.cells << " cells, "
+           << static_cast<double>(region.cells) * grid.cellVolume()
            << " m^3) would have to change its volume by " << sum * grid.h * grid.h
            << " m^3/s under the prescribed motion of";
       std::vector<char> named(bodies->size(), 0);
       std::vector<char> inside(grid.lattice.size, 0);
-      for (const auto c : region.cells) inside[c] = 1;
+      for (const auto& run : region.runs) std::fill(inside.begin() + run.begin, inside.begin() + run.end, 1);
       for (const BodyRow& row : rows.divergence) {
         if (!inside[row.sample] || named[row.body] || free_index[row.body] >= 0) continue;
         named[row.body] = 1;
@@ -239,7 +244,10 @@ std::string StepProblem::balanceSealedRegions(std::vector<double>& flux) const {
       text << "; an incompressible liquid cannot";
       return text.str();
     }
-    for (const auto c : region.cells) flux[c] -= sum / static_cast<double>(region.cells.size());
+    const double mean = sum / static_cast<double>(region.cells);
+    region.forEachRun([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+      for (auto c = begin; c < end; ++c) flux[c] -= mean;
+    });
   }
   return {};
 }

@@ -6,7 +6,7 @@
 #include "fluid/interpolation.h"
 #include "fluid/next_to_known.h"
 #include "fluid/row_advection.h"
-#include "solve/assign_zero.h"
+#include "solve/whole_fields.h"
 
 namespace monolith {
 namespace {
@@ -232,9 +232,8 @@ void advectVelocity(const MacGrid& grid, const FaceField<double>& velocity,
 
 void advectAccelerated(const MacGrid& grid, const FaceField<double>& velocity, const FaceField<double>& acceleration,
                        const std::array<std::vector<std::uint8_t>, 3>& known, double dt, FaceField<double>& moved,
-                       FaceField<double>& gained) {
+                       FaceField<double>& gained, FaceField<double>& mean) {
   const Lattice& l = grid.lattice;
-  FaceField<double> mean;
   for (int a = 0; a < 3; ++a) {
     mean[a].resize(l.size);
 #pragma omp parallel for simd schedule(static)

@@ -29,10 +29,10 @@ void advectVelocity(const MacGrid& grid, const FaceField<double>& velocity,
                     const std::array<std::vector<std::uint8_t>, 3>& known, double dt, FaceField<double>& moved);
 
 // The same with trajectories of second order in time: with the acceleration a of the liquid's particles they are
-// x = x_d + dt u(x_d) + dt^2/2 a(x_d). moved: u(x_d); gained: a(x_d), trilinear.
+// x = x_d + dt u(x_d) + dt^2/2 a(x_d). moved: u(x_d); gained: a(x_d), trilinear; mean: work space.
 void advectAccelerated(const MacGrid& grid, const FaceField<double>& velocity, const FaceField<double>& acceleration,
                        const std::array<std::vector<std::uint8_t>, 3>& known, double dt, FaceField<double>& moved,
-                       FaceField<double>& gained);
+                       FaceField<double>& gained, FaceField<double>& mean);
 
 // A cell-centred field moved by the velocity over dt, where its size is less than `band`; elsewhere it stays. Halos must
 // be filled.

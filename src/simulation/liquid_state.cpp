@@ -7,6 +7,7 @@
 
 #include "fluid/advection.h"
 #include "fluid/next_to_known.h"
+#include "solve/whole_fields.h"
 
 namespace monolith {
 namespace {
@@ -17,11 +18,12 @@ constexpr double kLeastSlope = 0.25;  // of the level set, per cell
 // that tell one: held constant instead, velocity at the surface would be that of up to half a cell below it.
 void continueIntoAir(const Lattice& l, const SolidFractions& solids, FaceField<double>& velocity,
                      std::array<std::vector<std::uint8_t>, 3>& known) {
+  std::vector<std::uint8_t> before;
   for (int a = 0; a < 3; ++a) {
     std::vector<double>& u = velocity[a];
     fillHalo(l, u);
     fillHalo(l, known[a]);
-    const std::vector<std::uint8_t> before = known[a];
+    copyField(known[a], before);
 #pragma omp parallel for schedule(static, kPlanesInTurn)
     for (int k = 0; k < l.faceEnd(2); ++k) {
       forEachNextToKnown(l, k, before.data(), [&](std::ptrdiff_t f, const std::array<int, 3>& at) {
@@ -96,7 +98,7 @@ void completeVelocity(const MacGrid& grid, const StepProblem& problem, const Sol
                       std::array<std::vector<std::uint8_t>, 3>& known) {
   const Lattice& l = grid.lattice;
   for (int a = 0; a < 3; ++a) {
-    known[a].assign(l.size, 0);
+    assignZero(l.size, known[a]);
     const int width = l.faceEnd(0);
     forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
       std::uint8_t* has = known[a].data() + row;

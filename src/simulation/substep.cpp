@@ -5,6 +5,7 @@
 
 #include "fluid/advection.h"
 #include "simulation/simulation_impl.h"
+#include "solve/whole_fields.h"
 
 namespace monolith {
 namespace {
@@ -58,7 +59,8 @@ void Simulation::Impl::prepareSolve(const StepWeights& w) {
 void Simulation::Impl::advectLiquid(const StepWeights& w, FaceField<double>& free_velocity) {
   const bool gains = w.order == 2 && hasLiquid();
   if (gains) {
-    advectAccelerated(grid, state.coupled.velocity, state.acceleration, state.known, w.dt, carried, free_velocity);
+    advectAccelerated(grid, state.coupled.velocity, state.acceleration, state.known, w.dt, carried, free_velocity,
+                      scratch.other.velocity);
   } else {
     advectVelocity(grid, state.coupled.velocity, state.known, w.dt, carried);
   }
@@ -76,7 +78,11 @@ void Simulation::Impl::advectLiquid(const StepWeights& w, FaceField<double>& fre
 
 // The solve starts from what there is after another step of the same accelerations.
 void Simulation::Impl::guess(const StepWeights& w, const FaceField<double>& free_velocity, CoupledState& start) const {
-  start = state.coupled;
+  for (int a = 0; a < 3; ++a) copyField(state.coupled.velocity[a], start.velocity[a]);
+  copyField(state.coupled.pressure, start.pressure);
+  start.liquid = state.coupled.liquid;
+  start.contact = state.coupled.contact;
+  start.impulses = state.coupled.impulses;
   start.twists.resize(state.bodies.size());
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
     start.twists[b] = state.bodies[b].twist;
@@ -165,7 +171,7 @@ void Simulation::Impl::moveLiquid(const StepWeights& w, StepReport& step) {
   std::vector<RigidBody> moving = plan.bodies;
   for (std::size_t b = 0; b < moving.size(); ++b) moving[b].twist = state.coupled.twists[b];
   auto& known_before = scratch.known_before;
-  known_before = state.known;
+  std::swap(known_before, state.known);
   completeVelocity(grid, system.problem(), solids, moving, layers, noSlip(), nullptr, state.coupled.velocity,
                    state.known);
   if (secondOrder()) {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "solve/assign_zero.h"
+#include "solve/whole_fields.h"
 #include "solve/blocked_sum.h"
 #include "solve/kernel_work.h"
 

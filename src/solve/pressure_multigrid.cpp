@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "solve/assign_zero.h"
+#include "solve/whole_fields.h"
 #include "solve/kernel_work.h"
 #include "solve/staggered_transfer.h"
 

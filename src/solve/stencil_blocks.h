@@ -16,7 +16,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "solve/assign_zero.h"
+#include "solve/whole_fields.h"
 #include "solve/lattice.h"
 #include "solve/steady_rows.h"
 

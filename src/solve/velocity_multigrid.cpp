@@ -1,6 +1,6 @@
 #include "solve/velocity_multigrid.h"
 
-#include "solve/assign_zero.h"
+#include "solve/whole_fields.h"
 #include "solve/staggered_transfer.h"
 
 namespace monolith {

@@ -105,12 +105,12 @@ TEST(Advection, RowsMoveAsTheirFacesDo) {
     EXPECT_GT(largest, 0.5);
     // The same with accelerations, at steps whose feet lie within half a cell and beyond.
     const FaceField<double> acceleration = {u[1], u[2], u[0]};
-    FaceField<double> mean = u, gained;
+    FaceField<double> mean = u, gained, work;
     const double dt = 0.7;
     for (int a = 0; a < 3; ++a) {
       for (std::size_t f = 0; f < l.size; ++f) mean[a][f] += 0.5 * dt * acceleration[a][f];
     }
-    advectAccelerated(grid, u, acceleration, known, dt, moved, gained);
+    advectAccelerated(grid, u, acceleration, known, dt, moved, gained, work);
     for (int a = 0; a < 3; ++a) {
       for (int k = 0; k < l.faceEnd(2); ++k) {
         for (int j = 0; j < l.faceEnd(1); ++j) {
