@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "solve/whole_fields.h"
+#include "solve/blocked_sum.h"
 #include "solve/kernel_work.h"
 
 namespace monolith {
@@ -14,18 +15,18 @@ constexpr double kLargestProjected = 20.0;
 constexpr int kSmootherDegree = 2;
 constexpr int kViscousSmootherDegree = 4;
 
-// Streams the field twice, of 3 flops a cell.
+void addTo(float* field, std::ptrdiff_t size, float constant) {
+#pragma omp simd
+  for (std::ptrdiff_t i = 0; i < size; ++i) field[i] += constant;
+}
+
+// Streams the field twice, for 2 flops a cell.
 float removeMean(const PressureRegion& region, float* field) {
-  countWork(region.cells, 3.0, 3.0 * sizeof(float));
-  const double sum = region.sum([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    double part = 0.0;
-#pragma omp simd reduction(+ : part)
-    for (auto c = begin; c < end; ++c) part += field[c];
-    return part;
-  });
+  countWork(region.cells, 2.0, 3.0 * sizeof(float));
+  const double sum = region.sum([&](std::ptrdiff_t begin, std::ptrdiff_t end) { return sumOf(field + begin, end - begin); });
   const float mean = static_cast<float>(sum / static_cast<double>(region.cells));
   region.forEachRun([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    for (auto c = begin; c < end; ++c) field[c] -= mean;
+    addTo(field + begin, end - begin, -mean);
   });
   return mean;
 }
@@ -98,7 +99,7 @@ void LiquidPreconditioner::apply(const float* r, float flux_scale, float* x) {
     // it.
     if (!region.null_mode) {
       region.forEachRun([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-        for (auto c = begin; c < end; ++c) phi[c] += constants[sealed];
+        addTo(phi + begin, end - begin, constants[sealed]);
       });
     }
     ++sealed;

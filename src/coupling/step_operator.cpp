@@ -116,9 +116,10 @@ double StepOperator::largestDivergence(StepVector& x) {
   for (const BodyRow& row : rows_->divergence) {
     divergence_[row.sample] += row.coefficient.dot(x.bodies[row.body]);
   }
+  const double* divergence = divergence_.data();
   double largest = 0.0;
 #pragma omp parallel for simd schedule(static) reduction(max : largest)
-  for (std::size_t i = 0; i < l.size; ++i) largest = std::max(largest, std::abs(divergence_[i]));
+  for (std::size_t i = 0; i < l.size; ++i) largest = std::max(largest, std::abs(divergence[i]));
   return largest;
 }
 

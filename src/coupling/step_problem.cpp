@@ -222,10 +222,8 @@ std::string StepProblem::balanceSealedRegions(std::vector<double>& flux) const {
       return std::accumulate(flux.begin() + begin, flux.begin() + end, 0.0);
     });
     const double size = region.sum([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-      double part = 0.0;
-#pragma omp simd reduction(+ : part)
-      for (auto c = begin; c < end; ++c) part += std::abs(flux[c]);
-      return part;
+      return std::accumulate(flux.begin() + begin, flux.begin() + end, 0.0,
+                             [](double part, double f) { return part + std::abs(f); });
     });
     if (std::abs(sum) > kFluxTolerance * size && size > 1e-12) {
       std::ostringstream text;

@@ -115,10 +115,10 @@ void buildPlainRow(const SampleBuilder& samples, double viscous_number, std::ptr
 
 std::vector<double> capped(const std::vector<double>& distance) {
   std::vector<double> out(distance.size());
+  const double* from = distance.data();
+  double* to = out.data();
 #pragma omp parallel for simd schedule(static)
-  for (std::size_t f = 0; f < out.size(); ++f) {
-    out[f] = std::min(std::max(distance[f], -kDistanceCap), kDistanceCap);
-  }
+  for (std::size_t f = 0; f < distance.size(); ++f) to[f] = std::min(std::max(from[f], -kDistanceCap), kDistanceCap);
   return out;
 }
 

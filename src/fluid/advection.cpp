@@ -188,6 +188,7 @@ void extrapolateVelocity(const Lattice& l, int layers, bool no_slip, std::array<
         });
       }
       bool any = false;
+#pragma omp parallel for schedule(static, kPlanesInTurn) reduction(|| : any)
       for (int k = 0; k < planes; ++k) {
         for (const auto f : found[k]) mask[f] = 1;
         any = any || !found[k].empty();

@@ -24,12 +24,34 @@ Sum blockedSum(std::ptrdiff_t size, BlockFunction&& f) {
   return total;
 }
 
-inline double dot(const std::vector<double>& x, const std::vector<double>& y) {
-  return blockedSum<double>(static_cast<std::ptrdiff_t>(x.size()), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    double sum = 0.0;
+// Loops over long arrays take plain pointers, not what a lambda has captured: GCC 12 would gather the array's address
+// anew for every lane.
+
+template <class Real>
+double sumOfProducts(const Real* x, const Real* y, std::ptrdiff_t size) {
+  constexpr std::ptrdiff_t kChunk = 512;  // terms of a sum in single precision
+  double total = 0.0;
+  for (std::ptrdiff_t begin = 0; begin < size; begin += kChunk) {
+    const auto end = std::min(size, begin + kChunk);
+    Real sum = 0;
 #pragma omp simd reduction(+ : sum)
     for (std::ptrdiff_t i = begin; i < end; ++i) sum += x[i] * y[i];
-    return sum;
+    total += sum;
+  }
+  return total;
+}
+
+template <class Real>
+double sumOf(const Real* x, std::ptrdiff_t size) {
+  double sum = 0.0;
+#pragma omp simd reduction(+ : sum)
+  for (std::ptrdiff_t i = 0; i < size; ++i) sum += x[i];
+  return sum;
+}
+
+inline double dot(const std::vector<double>& x, const std::vector<double>& y) {
+  return blockedSum<double>(static_cast<std::ptrdiff_t>(x.size()), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    return sumOfProducts(x.data() + begin, y.data() + begin, end - begin);
   });
 }
 

@@ -88,7 +88,9 @@ class StencilBlocks {
     std::memcpy(out.blocks_.data(), blocks_.data(), blocks_.size() * sizeof(Block));
     out.segments_.resize(segments_.size());
     std::memcpy(out.segments_.data(), segments_.data(), segments_.size() * sizeof(Segment));
-    out.values_.assign(values_.begin(), values_.end());
+    out.values_.resize(values_.size());
+#pragma omp parallel for simd schedule(static)
+    for (std::size_t i = 0; i < values_.size(); ++i) out.values_[i] = static_cast<To>(values_[i]);
     out.lattice_ = lattice_;
     out.anew_ = anew_;
     out.build_ = build_;
