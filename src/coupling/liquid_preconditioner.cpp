@@ -23,11 +23,10 @@ void addTo(float* field, std::ptrdiff_t size, float constant) {
 // Streams the field twice, for 2 flops a cell.
 float removeMean(const PressureRegion& region, float* field) {
   countWork(region.cells, 2.0, 3.0 * sizeof(float));
-  const double sum = region.sum([&](std::ptrdiff_t begin, std::ptrdiff_t end) { return sumOf(field + begin, end - begin); });
+  const double sum =
+      region.sum([&](std::ptrdiff_t begin, std::ptrdiff_t end) { return sumOf(field + begin, end - begin); });
   const float mean = static_cast<float>(sum / static_cast<double>(region.cells));
-  region.forEachRun([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    addTo(field + begin, end - begin, -mean);
-  });
+  region.forEachRun([&](std::ptrdiff_t begin, std::ptrdiff_t end) { addTo(field + begin, end - begin, -mean); });
   return mean;
 }
 

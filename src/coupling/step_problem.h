@@ -38,8 +38,9 @@ class StepProblem {
                 bool rates = false);
 
   // The right side with r = 0. free_velocity: u*, gravity included; its memory becomes that of rhs.velocity.
-  // free_twists: v* of free bodies, the prescribed twist of the others. gravity acts on the liquid that sticks to bodies. Returns what is wrong, if there is no
-  // solution: a sealed region whose volume the prescribed motions would change.
+  // free_twists: v* of free bodies, the prescribed twist of the others. gravity acts on the liquid that sticks to
+  // bodies. Returns what is wrong, if there is no solution: a sealed region whose volume the prescribed motions would
+  // change.
   [[nodiscard]] std::string rightSide(FaceField<double> free_velocity, const std::vector<Vector6d>& free_twists,
                                       const Eigen::Vector3d& gravity, StepVector& rhs) const;
 

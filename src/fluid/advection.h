@@ -24,7 +24,8 @@ double advectFace(const Lattice& lattice, const FaceField<double>& velocity, int
 double advectCell(const Lattice& lattice, const FaceField<double>& velocity, const std::vector<double>& field,
                   const std::array<int, 3>& cell, double scale);
 
-// The velocity field moved by itself over dt, on faces that are known, those in walls excepted; zero elsewhere. Halos must be filled.
+// The velocity field moved by itself over dt, on faces of the tank that are known, those in walls excepted; zero
+// elsewhere. Halos must be filled.
 void advectVelocity(const MacGrid& grid, const FaceField<double>& velocity,
                     const std::array<std::vector<std::uint8_t>, 3>& known, double dt, FaceField<double>& moved);
 

@@ -1,5 +1,6 @@
-// 9 + 51 + 64 loads of 32 bytes, from cache but for about one per field, and some 350 operations for four faces (twice
-// that where their feet lie in different octants): bound by arithmetic.
+// 9 + 51 + 64 + 8 loads of 32 bytes, from cache but for about one per field, and some 250 operations for four faces
+// (twice that where their feet lie in different octants, and half again as many where there is something to limit):
+// bound by arithmetic.
 #include "fluid/row_advection.h"
 
 #include <limits>
@@ -124,7 +125,8 @@ Four limit(Four sum, Four lowest, Four highest) {
   return least(most(sum, lowest - slack), highest + slack);
 }
 
-// Extremes over n nodes along each axis. Pairs first: a comparison that waits for the one before takes longer than a sum.
+// Extremes over n nodes along each axis. Pairs first: a comparison that waits for the one before takes longer than a
+// sum.
 template <int n>
 inline void findRange(const double* u, const Lattice& l, Four& lowest, Four& highest) {
   lowest = highest = at(u);

@@ -43,7 +43,7 @@ TEST(Bench, WritesALineOfJsonWithEveryKey) {
           "ms_per_step", "iterations", "liquid_solves",  "bytes_per_cell", "stage_ms",        "advection",
           "contact",     "geometry",   "solve",          "surface",        "bandwidth_share", "speedup",
           "cpu_ms",      "commit",     "machine",        "true_error",     "iteration_growth",
-          "contact_factor"}) {
+          "contact_factor", "flops_per_cell", "streamed_bytes_per_cell"}) {
       EXPECT_NE(line.find("\"" + key + "\": "), std::string::npos) << key << " in " << line;
     }
     EXPECT_NE(line.find("\"good\": true"), std::string::npos) << line;
