@@ -158,7 +158,7 @@ void SolidSampler::sampleBody(const RigidBody& body, BodySample& out) const {
   std::vector<float>& cell_distance = out.cell_distance;
   std::vector<std::array<float, 6>> halves(size);  // solid part of the low and high half along each axis
 
-#pragma omp parallel for schedule(static, kPlanesInTurn)
+#pragma omp parallel for schedule(dynamic)
   for (int k = 0; k < f.count[2]; ++k) {
     for (int j = 0; j < f.count[1]; ++j) {
       for (int i = 0; i < f.count[0]; ++i) {
@@ -199,7 +199,7 @@ void SolidSampler::sampleBody(const RigidBody& body, BodySample& out) const {
     }
   }
 
-#pragma omp parallel for schedule(static, kPlanesInTurn)
+#pragma omp parallel for schedule(dynamic)
   for (int k = 0; k < f.count[2]; ++k) {
     for (int j = 0; j < f.count[1]; ++j) {
       for (int i = 0; i < f.count[0]; ++i) {

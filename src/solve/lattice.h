@@ -52,10 +52,10 @@ constexpr int kPlanesInTurn = 4;
 // Calls f(row_start, j, k) for every x-row of faces (the range that covers all cells, faces and edges); f sees
 // rows of faceEnd(0) entries. Rows are shared among threads by k, so f may write its own row only.
 template <class RowFunction>
-void forEachRow(const Lattice& lattice, RowFunction&& f, std::size_t worth_sharing = kSizeWorthSharing) {
+void forEachRow(const Lattice& lattice, RowFunction&& f) {
   const int end_j = lattice.faceEnd(1);
   const int end_k = lattice.faceEnd(2);
-#pragma omp parallel for schedule(static, kPlanesInTurn) if (lattice.size >= worth_sharing)
+#pragma omp parallel for schedule(static, kPlanesInTurn) if (lattice.size >= kSizeWorthSharing)
   for (int k = 0; k < end_k; ++k) {
     for (int j = 0; j < end_j; ++j) {
       f(lattice.index(0, j, k), j, k);
@@ -63,10 +63,16 @@ void forEachRow(const Lattice& lattice, RowFunction&& f, std::size_t worth_shari
   }
 }
 
-// The same where there is much to do for each cell.
+// The same where there is much to do for each cell, and for some far more than for others: whoever is free takes the next
+// plane.
 template <class RowFunction>
 void forEachHeavyRow(const Lattice& lattice, RowFunction&& f) {
-  forEachRow(lattice, f, kHeavySizeWorthSharing);
+  const int end_j = lattice.faceEnd(1);
+  const int end_k = lattice.faceEnd(2);
+#pragma omp parallel for schedule(dynamic) if (lattice.size >= kHeavySizeWorthSharing)
+  for (int k = 0; k < end_k; ++k) {
+    for (int j = 0; j < end_j; ++j) f(lattice.index(0, j, k), j, k);
+  }
 }
 
 // Copies the periodic images into the halo; nothing along axes with walls.
