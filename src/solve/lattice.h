@@ -44,7 +44,7 @@ struct Lattice {
 };
 
 // Smaller lattices are not worth waking a second thread for; nor are these if there is much to do for each cell.
-constexpr std::size_t kSizeWorthSharing = 20000;
+constexpr std::size_t kSizeWorthSharing = 5000;
 constexpr std::size_t kHeavySizeWorthSharing = 2000;
 // Threads take planes in turn, so many at a time: liquid may fill only the lowest.
 constexpr int kPlanesInTurn = 4;

@@ -23,7 +23,7 @@
 namespace monolith {
 
 // Fewer blocks than this are not worth waking a second thread for.
-constexpr std::ptrdiff_t kBlocksWorthSharing = 1000;
+constexpr std::ptrdiff_t kBlocksWorthSharing = 500;
 
 template <class Real, int Count>
 class StencilBlocks {
