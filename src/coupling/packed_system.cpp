@@ -227,6 +227,8 @@ KrylovReport PackedSystem::solve(const std::vector<double>& rhs, std::vector<dou
   k.absolute_tolerance = goal;
   k.relative_tolerance = part;
   k.maximum_iterations = options.maximum_iterations;
+  // Where viscosities differ by orders of magnitude every direction counts.
+  if (!problem_->cell_viscosity.empty()) k.shortest_cycle = k.longest_cycle;
   const KrylovReport done = krylov_.solve(maps(), rhs, x, k, improved);
   report.iterations += done.iterations;
   ++report.solves;
