@@ -9,62 +9,38 @@ Vector6d velocityRow(int axis, const Eigen::Vector3d& x, const Eigen::Vector3d& 
   return row;
 }
 
-namespace {
-
-// Those of the cells of one plane of a body's box.
-void appendPlane(const MacGrid& grid, const BodyFractions& f, int k, int body, const Eigen::Vector3d& p_WBcm,
-                 const std::vector<std::uint8_t>& has_pressure, std::vector<BodyRow>& divergence,
-                 std::vector<BodyRow>& enclosed) {
-  const Lattice& l = grid.lattice;
-  for (int j = 0; f.within(1, j + 1) >= 0 && j < f.count[1]; ++j) {
-    for (int i = 0; f.within(0, i + 1) >= 0 && i < f.count[0]; ++i) {
-      int at[3] = {f.low[0] + i, f.low[1] + j, f.low[2] + k};
-      int cell[3];
-      bool outside = false;
-      for (int a = 0; a < 3; ++a) {
-        cell[a] = l.periodic[a] ? ((at[a] % l.n[a]) + l.n[a]) % l.n[a] : at[a];
-        outside = outside || cell[a] < 0 || cell[a] >= l.n[a];
-      }
-      if (outside) continue;
-      const auto c = l.index(cell[0], cell[1], cell[2]);
-      Vector6d row = Vector6d::Zero();
-      for (int a = 0; a < 3; ++a) {
-        int next[3] = {i, j, k};
-        next[a] = f.within(a, next[a] + 1);
-        const double low = f.face[a][f.local(i, j, k)];
-        const double high = f.face[a][f.local(next[0], next[1], next[2])];
-        // The lever arm of both faces is the same about the axis that counts, so equal fractions cancel exactly.
-        if (low == high) continue;
-        row += (high - low) * velocityRow(a, grid.faceCenter(a, at[0], at[1], at[2]), p_WBcm);
-      }
-      if (row.cwiseAbs().maxCoeff() == 0.0) continue;
-      (has_pressure[c] ? divergence : enclosed).push_back({c, body, row});
-    }
-  }
-}
-
-}  // namespace
-
 void buildDivergenceRows(const MacGrid& grid, const SolidFractions& solids, const std::vector<RigidBody>& bodies,
                          const StaggeredCoefficients<double>& coefficients, BodyRows& out) {
-  struct Plane {
-    int body, k;
-    std::vector<BodyRow> divergence, enclosed;
-  };
-  std::vector<Plane> planes;
+  const Lattice& l = grid.lattice;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const BodyFractions& f = solids.bodies[b];
-    for (int k = 0; f.within(2, k + 1) >= 0 && k < f.count[2]; ++k) planes.push_back({static_cast<int>(b), k, {}, {}});
-  }
-#pragma omp parallel for schedule(dynamic)
-  for (std::size_t p = 0; p < planes.size(); ++p) {
-    Plane& plane = planes[p];
-    appendPlane(grid, solids.bodies[plane.body], plane.k, plane.body, bodies[plane.body].p_WBcm,
-                coefficients.has_pressure, plane.divergence, plane.enclosed);
-  }
-  for (const Plane& plane : planes) {
-    out.divergence.insert(out.divergence.end(), plane.divergence.begin(), plane.divergence.end());
-    out.enclosed.insert(out.enclosed.end(), plane.enclosed.begin(), plane.enclosed.end());
+    for (int k = 0; f.within(2, k + 1) >= 0 && k < f.count[2]; ++k) {
+      for (int j = 0; f.within(1, j + 1) >= 0 && j < f.count[1]; ++j) {
+        for (int i = 0; f.within(0, i + 1) >= 0 && i < f.count[0]; ++i) {
+          int at[3] = {f.low[0] + i, f.low[1] + j, f.low[2] + k};
+          int cell[3];
+          bool outside = false;
+          for (int a = 0; a < 3; ++a) {
+            cell[a] = l.periodic[a] ? ((at[a] % l.n[a]) + l.n[a]) % l.n[a] : at[a];
+            outside = outside || cell[a] < 0 || cell[a] >= l.n[a];
+          }
+          if (outside) continue;
+          const auto c = l.index(cell[0], cell[1], cell[2]);
+          Vector6d row = Vector6d::Zero();
+          for (int a = 0; a < 3; ++a) {
+            int next[3] = {i, j, k};
+            next[a] = f.within(a, next[a] + 1);
+            const double low = f.face[a][f.local(i, j, k)];
+            const double high = f.face[a][f.local(next[0], next[1], next[2])];
+            // The lever arm of both faces is the same about the axis that counts, so equal fractions cancel exactly.
+            if (low == high) continue;
+            row += (high - low) * velocityRow(a, grid.faceCenter(a, at[0], at[1], at[2]), bodies[b].p_WBcm);
+          }
+          if (row.cwiseAbs().maxCoeff() == 0.0) continue;
+          (coefficients.has_pressure[c] ? out.divergence : out.enclosed).push_back({c, static_cast<int>(b), row});
+        }
+      }
+    }
   }
 }
 

@@ -154,8 +154,7 @@ double CoupledSystem::viscousChange(const CoupledState& solution, const Viscosit
 
 CoupledReport CoupledSystem::solve(FaceField<double>& free_velocity, const std::vector<Vector6d>& free_twists,
                                    const std::vector<Contact>& contacts, const std::vector<ContactLaw>& laws,
-                                   const Eigen::Vector3d& gravity, const CoupledOptions& options,
-                                   CoupledState& state) {
+                                   const Eigen::Vector3d& gravity, const CoupledOptions& options, CoupledState& state) {
   Impl& m = *impl_;
   CoupledReport report;
   report.message = m.problem.rightSide(std::move(free_velocity), free_twists, gravity, m.rhs);

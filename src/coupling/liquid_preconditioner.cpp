@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "solve/whole_fields.h"
 #include "solve/blocked_sum.h"
 #include "solve/kernel_work.h"
+#include "solve/whole_fields.h"
 
 namespace monolith {
 namespace {
@@ -97,9 +97,8 @@ void LiquidPreconditioner::apply(const float* r, float flux_scale, float* x) {
     // The constant of a pocket between free bodies is their doing alone; any positive scale lets the Krylov method find
     // it.
     if (!region.null_mode) {
-      region.forEachRun([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-        addTo(phi + begin, end - begin, constants[sealed]);
-      });
+      region.forEachRun(
+          [&](std::ptrdiff_t begin, std::ptrdiff_t end) { addTo(phi + begin, end - begin, constants[sealed]); });
     }
     ++sealed;
   }

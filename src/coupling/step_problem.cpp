@@ -7,8 +7,9 @@
 
 #include "coupling/fraction_coefficients.h"
 #include "coupling/row_kinds.h"
-#include "solve/whole_fields.h"
+#include "solve/blocked_sum.h"
 #include "solve/velocity_multigrid.h"
+#include "solve/whole_fields.h"
 
 namespace monolith {
 namespace {
@@ -218,9 +219,8 @@ std::string StepProblem::rightSide(FaceField<double> free_velocity, const std::v
 std::string StepProblem::balanceSealedRegions(std::vector<double>& flux) const {
   for (const PressureRegion& region : regions) {
     if (!region.null_mode) continue;
-    const double sum = region.sum([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-      return std::accumulate(flux.begin() + begin, flux.begin() + end, 0.0);
-    });
+    const double sum =
+        region.sum([&](std::ptrdiff_t begin, std::ptrdiff_t end) { return sumOf(flux.data() + begin, end - begin); });
     const double size = region.sum([&](std::ptrdiff_t begin, std::ptrdiff_t end) {
       return std::accumulate(flux.begin() + begin, flux.begin() + end, 0.0,
                              [](double part, double f) { return part + std::abs(f); });
@@ -228,9 +228,8 @@ std::string StepProblem::balanceSealedRegions(std::vector<double>& flux) const {
     if (std::abs(sum) > kFluxTolerance * size && size > 1e-12) {
       std::ostringstream text;
       text << "a sealed region of liquid (" << region.cells << " cells, "
-           << static_cast<double>(region.cells) * grid.cellVolume()
-           << " m^3) would have to change its volume by " << sum * grid.h * grid.h
-           << " m^3/s under the prescribed motion of";
+           << static_cast<double>(region.cells) * grid.cellVolume() << " m^3) would have to change its volume by "
+           << sum * grid.h * grid.h << " m^3/s under the prescribed motion of";
       std::vector<char> named(bodies->size(), 0);
       std::vector<char> inside(grid.lattice.size, 0);
       for (const auto& run : region.runs) std::fill(inside.begin() + run.begin, inside.begin() + run.end, 1);

@@ -14,9 +14,13 @@ namespace {
 
 // Threads that wait for each other by spinning slow each other down a hundredfold as soon as rviz or a recorder shares
 // the processor; threads that sleep at once are woken too late hundreds of times a step. So they spin for about as long
-// as waking takes (the demo's first 4 s on two cores, times real time, alone and beside a busy program: asleep 0.8 and
-// 1.5, spinning so long 1.8 and 1.0, five times as long 2.3 and 0.4, and without end 2.4 and 0.01). OpenMP reads its
-// settings before main(), so the program starts itself once more with the right one.
+// as waking takes. What `./tank run drop --duration 4 --fast` prints last, times real time during the last second of
+// it, on two cores, alone and beside a program that keeps one busy:
+//   OMP_WAIT_POLICY=passive                        0.8   1.5
+//   (this: GOMP_SPINCOUNT=1000)                    1.8   1.0
+//   OMP_WAIT_POLICY=active GOMP_SPINCOUNT=5000     2.3   0.4
+//   OMP_WAIT_POLICY=active GOMP_SPINCOUNT=300000   2.4   0.01
+// OpenMP reads its settings before main(), so the program starts itself once more with the right one.
 void waitBriefly(char** argv) {
   if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
   setenv("GOMP_SPINCOUNT", "1000", 1);

@@ -101,7 +101,9 @@ struct Simulation::Impl {
   // Within a sub-step only, kept for their memory.
   struct Scratch {
     FaceField<double> free_velocity;
-    CoupledState other;  // until the solve has converged what is to come, from then on what was
+    // Until the solve has converged what is to come, from then on what was; its velocities are work space before the
+    // solve and after what was has served.
+    CoupledState other;
     std::array<std::vector<std::uint8_t>, 3> known_before, known;
   } scratch;
   CoupledSystem system;

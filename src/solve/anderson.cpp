@@ -10,12 +10,16 @@ namespace {
 // Directions that the others already span to this part are left out.
 constexpr double kRankTolerance = 1e-7;
 
+double sumOfThree(const double* weight, const double* a, const double* b, std::ptrdiff_t size) {
+  double sum = 0.0;
+#pragma omp simd reduction(+ : sum)
+  for (std::ptrdiff_t i = 0; i < size; ++i) sum += weight[i] * a[i] * b[i];
+  return sum;
+}
+
 double weightedDot(const std::vector<double>& weight, const std::vector<double>& a, const std::vector<double>& b) {
   return blockedSum<double>(static_cast<std::ptrdiff_t>(a.size()), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    double sum = 0.0;
-#pragma omp simd reduction(+ : sum)
-    for (std::ptrdiff_t i = begin; i < end; ++i) sum += weight[i] * a[i] * b[i];
-    return sum;
+    return sumOfThree(weight.data() + begin, a.data() + begin, b.data() + begin, end - begin);
   });
 }
 

@@ -27,9 +27,10 @@ Sum blockedSum(std::ptrdiff_t size, BlockFunction&& f) {
 // Loops over long arrays take plain pointers, not what a lambda has captured: GCC 12 would gather the array's address
 // anew for every lane.
 
+constexpr std::ptrdiff_t kChunk = 512;  // terms of a sum in single precision
+
 template <class Real>
 double sumOfProducts(const Real* x, const Real* y, std::ptrdiff_t size) {
-  constexpr std::ptrdiff_t kChunk = 512;  // terms of a sum in single precision
   double total = 0.0;
   for (std::ptrdiff_t begin = 0; begin < size; begin += kChunk) {
     const auto end = std::min(size, begin + kChunk);
@@ -45,7 +46,7 @@ template <class Real>
 double sumOf(const Real* x, std::ptrdiff_t size) {
   double sum = 0.0;
 #pragma omp simd reduction(+ : sum)
-  for (std::ptrdiff_t i = 0; i < size; ++i) sum += x[i];
+  for (std::ptrdiff_t i = 0; i < size; ++i) sum += static_cast<double>(x[i]);
   return sum;
 }
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <type_traits>
 
-#include "solve/whole_fields.h"
 #include "solve/blocked_sum.h"
 #include "solve/kernel_work.h"
+#include "solve/whole_fields.h"
 
 namespace monolith {
 namespace {
@@ -23,7 +23,6 @@ constexpr double kLost = 2.0;
 constexpr double kPoorCycle = 0.1;
 // The estimate of a cycle may be a little off: aim lower than the goal.
 constexpr double kMargin = 0.9;
-constexpr std::ptrdiff_t kChunk = 512;  // terms of a sum in single precision
 
 // a.c, b.c, a.d, b.d at once: one sum alone would wait for its own additions.
 template <class Real>

@@ -8,7 +8,8 @@ namespace monolith {
 
 struct KernelWork {
   double flops = 0.0;  // a fused multiply-add is two
-  double bytes = 0.0;  // each field that a kernel reads or writes once, as if none stayed in a cache from one to the next
+  double bytes =
+      0.0;  // each field that a kernel reads or writes once, as if none stayed in a cache from one to the next
 };
 
 // Of all kernels that this thread has started.

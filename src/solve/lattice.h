@@ -63,8 +63,8 @@ void forEachRow(const Lattice& lattice, RowFunction&& f) {
   }
 }
 
-// The same where there is much to do for each cell, and for some far more than for others: whoever is free takes the next
-// plane.
+// The same where there is much to do for each cell, and for some far more than for others: whoever is free takes the
+// next plane.
 template <class RowFunction>
 void forEachHeavyRow(const Lattice& lattice, RowFunction&& f) {
   const int end_j = lattice.faceEnd(1);

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "solve/whole_fields.h"
 #include "solve/kernel_work.h"
 #include "solve/staggered_transfer.h"
+#include "solve/whole_fields.h"
 
 namespace monolith {
 namespace {
@@ -259,7 +259,8 @@ void PressureMultigrid::residual(Level& level, float* r) const {
   });
 }
 
-// A step streams x, b, d (read and written) and next: 20 bytes a cell for 25 flops: bound by the second cache or memory.
+// A step streams x, b, d (read and written) and next: 20 bytes a cell for 25 flops: bound by the second cache or
+// memory.
 void PressureMultigrid::smooth(Level& level, int degree, bool from_zero) const {
   ChebyshevRecurrence recurrence(level.range);
   const float* b = level.right;

@@ -16,9 +16,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include "solve/whole_fields.h"
 #include "solve/lattice.h"
 #include "solve/steady_rows.h"
+#include "solve/whole_fields.h"
 
 namespace monolith {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "solve/whole_fields.h"
 #include "solve/kernel_work.h"
+#include "solve/whole_fields.h"
 
 namespace monolith {
 namespace {
@@ -18,8 +18,8 @@ struct Others {
 };
 constexpr Others kOthers[3] = {{{1, 2}, {0, 1}, {0, 0}}, {{0, 2}, {0, 2}, {1, 0}}, {{0, 1}, {1, 2}, {1, 1}}};
 
-// A U of the lanes from f on. Over the pattern's 11 and the fields' 15 loads a face, all but three of which hit the first
-// cache: bound by its load ports.
+// A U of the lanes from f on. Over the pattern's 11 and the fields' 15 loads a face, all but three of which hit the
+// first cache: bound by its load ports.
 constexpr double kMomentumFlops = 31.0;
 template <class Real>
 inline void momentum(const Lattice& l, int a, std::ptrdiff_t f, const Real* k, const Faces<const Real>& U, Real* out) {
@@ -203,8 +203,8 @@ void applyMomentum(const Lattice& l, const FaceBlocks<Real>& blocks, bool viscou
   });
 }
 
-// Streams U, y and perhaps g: 16 or 20 bytes a cell in single precision for 12 or 13 flops: bound by the second cache or
-// memory.
+// Streams U, y and perhaps g: 16 or 20 bytes a cell in single precision for 12 or 13 flops: bound by the second cache
+// or memory.
 template <class Real>
 void applyDivergence(const Lattice& l, const CellBlocks<Real>& blocks, const Faces<const Real>& U, Real factor,
                      const Real* g, Real* y) {
@@ -230,7 +230,8 @@ void applyDivergence(const Lattice& l, const CellBlocks<Real>& blocks, const Fac
   });
 }
 
-// Streams x, b, d (read and written) and next: 60 bytes a cell for 111 flops. In cache bound by loads, beyond by memory.
+// Streams x, b, d (read and written) and next: 60 bytes a cell for 111 flops. In cache bound by loads, beyond by
+// memory.
 void chebyshevStep(const Lattice& l, const FaceBlocks<float>& blocks, const Faces<const float>& x,
                    const Faces<const float>& b, float keep, float scale, const Faces<float>& d,
                    const Faces<float>& next) {

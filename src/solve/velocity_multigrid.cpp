@@ -1,7 +1,7 @@
 #include "solve/velocity_multigrid.h"
 
-#include "solve/whole_fields.h"
 #include "solve/staggered_transfer.h"
+#include "solve/whole_fields.h"
 
 namespace monolith {
 namespace {

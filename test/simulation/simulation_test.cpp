@@ -203,6 +203,42 @@ TEST(Simulation, AFailedSolveIsReportedAndNotCommitted) {
   EXPECT_EQ(simulation.bodyStates()[0].velocity, before.velocity);
 }
 
+// A ball is shot into the liquid: the sub-steps before it arrives take few iterations, one after that too many.
+TEST(Simulation, AFailureInALaterSubstepTakesBackThoseBefore) {
+  int failures = 0;
+  for (int most = 2; most <= 12; ++most) {
+    Scene scene = tank(0.08, 1.0);
+    scene.time_step = 0.02;
+    scene.solver.maximum_iterations = most;
+    scene.bodies.push_back(sphereBody("ball", 0.02, 2000.0, {0.08, 0.08, 0.115}));
+    Simulation simulation(scene);
+    simulation.setBodyState(0, Eigen::Isometry3d(Eigen::Translation3d(0.08, 0.08, 0.115)), {0.0, 0.0, -2.0},
+                            Eigen::Vector3d::Zero());
+    const Eigen::Vector3d below(0.083, 0.078, 0.05);
+    for (int step = 0; step < 3; ++step) {
+      const double time = simulation.time();
+      const BodyState body = simulation.bodyStates()[0];
+      const Eigen::Vector3d velocity = simulation.liquidVelocity(below);
+      const std::vector<SurfacePoint> surface = simulation.surfacePoints();
+      const StepReport r = simulation.step();
+      if (r.committed()) continue;
+      if (r.substeps == 1) break;
+      ++failures;
+      EXPECT_EQ(simulation.time(), time);
+      const BodyState after = simulation.bodyStates()[0];
+      EXPECT_EQ(after.X_WB.matrix(), body.X_WB.matrix());
+      EXPECT_EQ(after.velocity, body.velocity);
+      EXPECT_EQ(after.liquid.force, body.liquid.force);
+      EXPECT_EQ(simulation.liquidVelocity(below), velocity);
+      const std::vector<SurfacePoint> surface_after = simulation.surfacePoints();
+      ASSERT_EQ(surface_after.size(), surface.size());
+      for (std::size_t i = 0; i < surface.size(); ++i) EXPECT_EQ(surface_after[i].position, surface[i].position);
+      break;
+    }
+  }
+  EXPECT_GT(failures, 0);
+}
+
 TEST(Simulation, APistonOnSealedLiquidIsRefusedByName) {
   Scene scene = tank(0.16, 1.0);
   BodyDescription piston = boxBody("piston", {0.16, 0.16, 0.03}, 1000.0, {0.08, 0.08, 0.08});

@@ -9,13 +9,15 @@ namespace monolith::bench {
 void printHead(std::FILE* to) {
   std::fprintf(
       to,
-      "Times in ms of the median step; iter: Krylov iterations a step, x: against the first size; solves: with\n"
-      "the whole liquid; B/cel: memory at its peak; Gflop/s: of the solve; flop and strm: operations and bytes that the\n"
-      "solve's kernels stream, a step and cell; bw: that rate, from caches or memory, part of what this machine's memory\n"
-      "gives; scale: against the first number of threads; touch: against the same bodies a cell apart.\n"
-      "%5s %3s %8s %6s %8s %9s %8s %7s | %8s %6s %6s %6s %8s %6s %6s | %7s %5s %6s %6s %5s %6s %6s %7s %5s %6s %6s %8s\n",
+      "Times in ms of the median step; iter: Krylov iterations a step, x: against the first size; solves: with the\n"
+      "whole liquid; B/cel: memory at its peak; flop, strm: operations and bytes that the solve's kernels stream, a\n"
+      "step and cell; bw: bytes streamed a second, from caches or memory, part of what this machine's memory gives;\n"
+      "scale: against the first number of threads; touch: against the same bodies a cell apart.\n"
+      "%5s %3s %8s %6s %8s %9s %8s %7s | %8s %6s %6s %6s %8s %6s %6s | %7s %5s %6s %6s %5s %6s %6s %7s %5s %6s %6s "
+      "%8s\n",
       "cells", "thr", "nu dt/h2", "bodies", "contacts", "solver", "tol", "error", "ms/step", "advect", "contct", "geom",
-      "solve", "surf", "other", "cpu ms", "iter", "x", "solves", "B/cel", "flop", "strm", "Gflop/s", "bw", "scale", "touch", "speedup");
+      "solve", "surf", "other", "cpu ms", "iter", "x", "solves", "B/cel", "flop", "strm", "Gflop/s", "bw", "scale",
+      "touch", "speedup");
 }
 
 void printRow(const Row& row, std::FILE* to) {
@@ -28,13 +30,14 @@ void printRow(const Row& row, std::FILE* to) {
     return;
   }
   const double cells = std::pow(c.size, 3);
-  std::fprintf(to,
-               "%8.1e %7.1e | %8.1f %6.1f %6.1f %6.1f %8.1f %6.1f %6.1f | %7.1f %5.1f %6.2f %6.1f %5.0f %6.0f %6.0f %7.1f "
-               "%5.2f %6.2f ",
-               row.accuracy.tolerance, row.accuracy.error, s.ms_per_step, s.advection_ms, s.contact_ms, s.geometry_ms,
-               s.solve_ms, s.surface_ms, s.other_ms, s.cpu_ms, s.iterations, row.iteration_growth, s.liquid_solves,
-               s.bytes_per_cell, s.flops / cells, s.streamed / cells, 1e-6 * s.flops / s.solve_ms, row.bandwidth_share,
-               row.thread_speedup);
+  std::fprintf(
+      to,
+      "%8.1e %7.1e | %8.1f %6.1f %6.1f %6.1f %8.1f %6.1f %6.1f | %7.1f %5.1f %6.2f %6.1f %5.0f %6.0f %6.0f %7.1f "
+      "%5.2f %6.2f ",
+      row.accuracy.tolerance, row.accuracy.error, s.ms_per_step, s.advection_ms, s.contact_ms, s.geometry_ms,
+      s.solve_ms, s.surface_ms, s.other_ms, s.cpu_ms, s.iterations, row.iteration_growth, s.liquid_solves,
+      s.bytes_per_cell, s.flops / cells, s.streamed / cells, 1e-6 * s.flops / s.solve_ms, row.bandwidth_share,
+      row.thread_speedup);
   const auto printFactor = [&](double factor, const char* format) {
     if (factor > 0.0) {
       std::fprintf(to, format, factor);
