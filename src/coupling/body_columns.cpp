@@ -1,6 +1,7 @@
 #include "coupling/body_columns.h"
 
 #include <algorithm>
+#include <array>
 
 #include "solve/kernel_work.h"
 
@@ -50,10 +51,8 @@ class Collector {
   std::ptrdiff_t interior(std::ptrdiff_t f) const {
     const Lattice& l = lattice_;
     if (!l.anyPeriodic()) return f;
-    int at[3] = {static_cast<int>(f % l.stride[1]), static_cast<int>(f / l.stride[1] % (l.stride[2] / l.stride[1])),
-                 static_cast<int>(f / l.stride[2])};
+    std::array<int, 3> at = l.cell(f);
     for (int a = 0; a < 3; ++a) {
-      at[a] -= Lattice::kLowHalo;
       if (l.periodic[a]) at[a] = (at[a] + l.n[a]) % l.n[a];
     }
     return l.index(at[0], at[1], at[2]);

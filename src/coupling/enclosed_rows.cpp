@@ -8,11 +8,10 @@ namespace {
 
 using Cell = std::array<int, 3>;
 
-// Breadth-first from all cells with pressure into cells without, `inside` ones: for each the nearest cell with pressure,
-// and the steps from there.
+// The cell with pressure that is nearest to one without, and the steps from there.
 struct Nearest {
-  std::vector<std::ptrdiff_t> cell;
-  std::vector<Cell> steps;
+  std::ptrdiff_t cell = -1;  // -1: none
+  Cell steps = {0, 0, 0};
 };
 
 // Index of the cell next to `at` along an axis, which is moved there; -1 beyond a wall.
@@ -22,46 +21,74 @@ std::ptrdiff_t step(const Lattice& l, Cell& at, int axis, int direction) {
   return at[axis] < 0 || at[axis] >= l.n[axis] ? -1 : l.index(at[0], at[1], at[2]);
 }
 
-Nearest findNearest(const Lattice& l, const std::vector<std::uint8_t>& has_pressure, const std::vector<char>& inside) {
-  Nearest out;
-  out.cell.assign(l.size, -1);
-  out.steps.assign(l.size, Cell{0, 0, 0});
-  std::vector<Cell> front;
-  const auto hasWayIn = [&](const Cell& here) {
-    for (int a = 0; a < 3; ++a) {
-      for (const int direction : {-1, 1}) {
-        Cell next = here;
-        const auto n = step(l, next, a, direction);
-        if (n >= 0 && inside[n] && !has_pressure[n]) return true;
-      }
+// f(cell, its index, axis, direction): for the neighbours of a cell in the tank.
+template <class Function>
+void forEachNeighbour(const Lattice& l, const Cell& here, Function&& f) {
+  for (int a = 0; a < 3; ++a) {
+    for (const int direction : {-1, 1}) {
+      Cell next = here;
+      const auto n = step(l, next, a, direction);
+      if (n >= 0) f(next, n, a, direction);
     }
-    return false;
-  };
+  }
+}
+
+// Breadth-first from cells with pressure, in the lattice's order. find(n): what is known of cell n; null where the
+// search may not go.
+template <class Find>
+void spread(const Lattice& l, std::vector<Cell> front, Find&& find) {
+  std::vector<Nearest> from;
+  for (const Cell& cell : front) from.push_back({l.index(cell[0], cell[1], cell[2])});
+  for (std::size_t at = 0; at < front.size(); ++at) {
+    forEachNeighbour(l, Cell(front[at]), [&](const Cell& next, std::ptrdiff_t n, int axis, int direction) {
+      Nearest* nearest = find(n);
+      if (nearest == nullptr || nearest->cell >= 0) return;
+      *nearest = from[at];
+      nearest->steps[axis] += direction;
+      front.push_back(next);
+      from.push_back(*nearest);
+    });
+  }
+}
+
+// Of the cells of a contact, which are sorted, by ways that lead through them only.
+std::vector<Nearest> nearestAlong(const Lattice& l, const std::vector<std::uint8_t>& has_pressure,
+                                  const std::vector<std::ptrdiff_t>& contact) {
+  std::vector<std::ptrdiff_t> rim;
+  for (const auto c : contact) {
+    forEachNeighbour(l, l.cell(c), [&](const Cell&, std::ptrdiff_t n, int, int) {
+      if (has_pressure[n]) rim.push_back(n);
+    });
+  }
+  std::sort(rim.begin(), rim.end());
+  rim.erase(std::unique(rim.begin(), rim.end()), rim.end());
+  std::vector<Cell> front;
+  for (const auto c : rim) front.push_back(l.cell(c));
+  std::vector<Nearest> out(contact.size());
+  spread(l, std::move(front), [&](std::ptrdiff_t n) -> Nearest* {
+    const auto place = std::lower_bound(contact.begin(), contact.end(), n);
+    return place == contact.end() || *place != n ? nullptr : &out[place - contact.begin()];
+  });
+  return out;
+}
+
+// Of all cells without pressure.
+std::vector<Nearest> nearestThrough(const Lattice& l, const std::vector<std::uint8_t>& has_pressure) {
+  std::vector<Nearest> out(l.size);
+  std::vector<Cell> front;
   for (int k = 0; k < l.n[2]; ++k) {
     for (int j = 0; j < l.n[1]; ++j) {
       for (int i = 0; i < l.n[0]; ++i) {
         const auto c = l.index(i, j, k);
         if (!has_pressure[c]) continue;
-        out.cell[c] = c;
-        if (hasWayIn({i, j, k})) front.push_back({i, j, k});
+        out[c].cell = c;
+        bool ends = false;
+        forEachNeighbour(l, {i, j, k}, [&](const Cell&, std::ptrdiff_t n, int, int) { ends |= !has_pressure[n]; });
+        if (ends) front.push_back({i, j, k});
       }
     }
   }
-  for (std::size_t at = 0; at < front.size(); ++at) {
-    const Cell here = front[at];
-    const auto c = l.index(here[0], here[1], here[2]);
-    for (int a = 0; a < 3; ++a) {
-      for (const int direction : {-1, 1}) {
-        Cell next = here;
-        const auto n = step(l, next, a, direction);
-        if (n < 0 || out.cell[n] >= 0 || !inside[n]) continue;
-        out.cell[n] = out.cell[c];
-        out.steps[n] = out.steps[c];
-        out.steps[n][a] += direction;
-        front.push_back(next);
-      }
-    }
-  }
+  spread(l, std::move(front), [&](std::ptrdiff_t n) { return &out[n]; });
   return out;
 }
 
@@ -90,22 +117,23 @@ std::vector<EnclosedWeight> moveEnclosedRows(const MacGrid& grid, const SolidFra
     return weights;
   }
   // Along the contact first: through a body only if the contact has no rim.
-  std::vector<char> contact(l.size, 0);
-  for (const BodyRow& row : rows.enclosed) contact[row.sample] = 1;
-  const Nearest along = findNearest(l, coefficients.has_pressure, contact);
-  const auto hasNoRim = [&](const BodyRow& row) { return isBelowSurface(row) && along.cell[row.sample] < 0; };
-  Nearest through;
-  if (std::any_of(rows.enclosed.begin(), rows.enclosed.end(), hasNoRim)) {
-    through = findNearest(l, coefficients.has_pressure, std::vector<char>(l.size, 1));
-  }
+  std::vector<std::ptrdiff_t> contact;
+  for (const BodyRow& row : rows.enclosed) contact.push_back(row.sample);
+  std::sort(contact.begin(), contact.end());
+  contact.erase(std::unique(contact.begin(), contact.end()), contact.end());
+  const std::vector<Nearest> along = nearestAlong(l, coefficients.has_pressure, contact);
+  std::vector<Nearest> through;
   for (const BodyRow& row : rows.enclosed) {
     if (!isBelowSurface(row) || runsInPlace(bodies[row.body])) continue;
-    const Nearest& nearest = hasNoRim(row) ? through : along;
-    const auto q = nearest.cell[row.sample];
-    if (q < 0) continue;
-    rows.divergence.push_back({q, row.body, row.coefficient});
-    const Cell& steps = nearest.steps[row.sample];
-    weights.push_back({row.body, row.coefficient, grid.h * Eigen::Vector3d(steps[0], steps[1], steps[2])});
+    Nearest nearest = along[std::lower_bound(contact.begin(), contact.end(), row.sample) - contact.begin()];
+    if (nearest.cell < 0) {
+      if (through.empty()) through = nearestThrough(l, coefficients.has_pressure);
+      nearest = through[row.sample];
+    }
+    if (nearest.cell < 0) continue;
+    rows.divergence.push_back({nearest.cell, row.body, row.coefficient});
+    const Eigen::Vector3d steps(nearest.steps[0], nearest.steps[1], nearest.steps[2]);
+    weights.push_back({row.body, row.coefficient, grid.h * steps});
   }
   rows.enclosed.clear();
   return weights;

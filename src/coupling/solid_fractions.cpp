@@ -31,6 +31,14 @@ std::ptrdiff_t gridIndex(const Lattice& l, std::array<int, 3> cell, int face_axi
   return l.index(cell[0], cell[1], cell[2]);
 }
 
+// A box longer than a period holds cells of the grid twice.
+bool holdsCellsOnce(const Lattice& l, const BodyFractions& box) {
+  for (int a = 0; a < 3; ++a) {
+    if (l.periodic[a] && box.count[a] > l.n[a]) return false;
+  }
+  return true;
+}
+
 bool isWallFace(const Lattice& l, int axis, int at) { return !l.periodic[axis] && (at == 0 || at == l.n[axis]); }
 
 // f(place, distance): distance to the nearest wall, in cell widths, of a sample of every cell and of the halo, where it
@@ -54,9 +62,11 @@ void forEachWallDistance(const Lattice& l, const Eigen::Vector3d& offset, Functi
   }
 }
 
-// f(i, j, k, g) for every place of a body's box that the body takes a part of; g: its face on the grid, or -1.
+// f(i, j, k, g) for every place of a body's box that the body takes a part of; g: its face on the grid, or -1. Shared
+// among threads by k.
 template <class Function>
 void forEachFace(const Lattice& l, const BodyFractions& box, int axis, Function&& f) {
+#pragma omp parallel for schedule(static, kPlanesInTurn) if (holdsCellsOnce(l, box))
   for (int k = 0; k < box.count[2]; ++k) {
     for (int j = 0; j < box.count[1]; ++j) {
       for (int i = 0; i < box.count[0]; ++i) {
@@ -223,10 +233,7 @@ void SolidSampler::addBody(const BodySample& sample, int index, SolidFractions& 
   const Lattice& l = grid_.lattice;
   BodyFractions& f = out.bodies[index];
   f = sample.fractions;
-  // A box longer than a period holds cells of the grid twice.
-  bool once = true;
-  for (int a = 0; a < 3; ++a) once = once && (!l.periodic[a] || f.count[a] <= l.n[a]);
-#pragma omp parallel for schedule(static, kPlanesInTurn) if (once)
+#pragma omp parallel for schedule(static, kPlanesInTurn) if (holdsCellsOnce(l, f))
   for (int k = 0; k < f.count[2]; ++k) {
     for (int j = 0; j < f.count[1]; ++j) {
       for (int i = 0; i < f.count[0]; ++i) {
@@ -265,12 +272,13 @@ void SolidSampler::close(SolidFractions& out) const {
   for (BodyFractions& f : out.bodies) {
     f.at_walls.clear();
     for (int a = 0; a < 3; ++a) {
+      std::vector<std::vector<WallPart>> at_walls(f.count[2]);  // by k
       forEachFace(l, f, a, [&](int i, int j, int k, std::ptrdiff_t g) {
         double& fraction = f.face[a][f.local(i, j, k)];
         const std::array<int, 3> at = {f.low[0] + i, f.low[1] + j, f.low[2] + k};
         if (g < 0 || isWallFace(l, a, at[a])) {
           if (g >= 0) {
-            f.at_walls.push_back(
+            at_walls[k].push_back(
                 {a, g, at[a] == 0 ? g : g - l.stride[a], fraction, grid_.faceCenter(a, at[0], at[1], at[2])});
           }
           fraction = 0.0;
@@ -278,6 +286,7 @@ void SolidSampler::close(SolidFractions& out) const {
           fraction /= 1.0 - out.fluid[a][g];
         }
       });
+      for (const auto& parts : at_walls) f.at_walls.insert(f.at_walls.end(), parts.begin(), parts.end());
     }
   }
   for (int a = 0; a < 3; ++a) {

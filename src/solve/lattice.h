@@ -37,6 +37,12 @@ struct Lattice {
   std::ptrdiff_t index(int i, int j, int k) const {
     return (i + kLowHalo) + stride[1] * (j + kLowHalo) + stride[2] * (k + kLowHalo);
   }
+  // (i, j, k) of an index.
+  std::array<int, 3> cell(std::ptrdiff_t index) const {
+    return {static_cast<int>(index % stride[1]) - kLowHalo,
+            static_cast<int>(index / stride[1] % (stride[2] / stride[1])) - kLowHalo,
+            static_cast<int>(index / stride[2]) - kLowHalo};
+  }
   // One past the last face along an axis.
   int faceEnd(int axis) const { return periodic[axis] ? n[axis] : n[axis] + 1; }
   bool anyPeriodic() const { return periodic[0] || periodic[1] || periodic[2]; }

@@ -12,8 +12,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
-#include <string_view>
-#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "solve/lattice.h"
@@ -116,17 +115,20 @@ class StencilBlocks {
     std::vector<std::int32_t> row_ends;      // blocks up to here, of a component's rows
     std::vector<Real> values;
     std::vector<std::int32_t> origin;  // of each pattern among the last build's; -1: none
+    std::vector<std::uint64_t> hash;   // of each pattern
+    std::vector<std::int32_t> number;  // of each pattern among all planes'
 
     std::int32_t add(const Real* pattern, std::int32_t from) {
       values.insert(values.end(), pattern, pattern + kSize);
       origin.push_back(from);
+      hash.push_back(hashOf(pattern));
       return static_cast<std::int32_t>(origin.size()) - 1;
     }
   };
   // What the last build has left.
   struct Last {
     std::vector<Block> blocks;
-    std::vector<Real> values;
+    UnsetVector<Real> values;
     std::vector<std::int32_t> row_begin;
 
     std::size_t patterns() const { return values.size() / kSize; }
@@ -134,23 +136,24 @@ class StencilBlocks {
   template <class FillRow>
   void buildPlane(int k, const std::vector<int>& first, FillRow&& fill, const SteadyRows* kept, const Last& before,
                   Plane& plane) const;
+  std::int32_t numberPatterns(std::vector<Plane>& planes, std::size_t patterns_before) const;
   void merge(std::vector<Plane>& planes, int components, std::size_t patterns_before);
   void findLost(int components, const Last& before);
 
   // Some of a pattern's words tell most patterns apart; which are the same is seen from all of them.
-  struct PatternHash {
-    std::size_t operator()(std::string_view text) const {
-      constexpr std::size_t kStride = 7 * sizeof(std::uint64_t);
-      std::uint64_t sum = 0;
-      for (std::size_t at = 0; at + sizeof(std::uint64_t) <= text.size(); at += kStride) {
-        std::uint64_t word;
-        std::memcpy(&word, text.data() + at, sizeof(word));
-        sum = (sum ^ word) * 0x9E3779B97F4A7C15u;
-        sum ^= sum >> 29;
-      }
-      return sum;
+  static std::uint64_t hashOf(const Real* pattern) {
+    constexpr std::size_t kWord = sizeof(std::uint64_t), kStride = 7 * kWord;
+    const char* bytes = reinterpret_cast<const char*>(pattern);
+    std::uint64_t sum = 0;
+    for (std::size_t at = 0; at + kWord <= kSize * sizeof(Real); at += kStride) {
+      std::uint64_t word;
+      std::memcpy(&word, bytes + at, kWord);
+      sum = (sum ^ word) * 0x9E3779B97F4A7C15u;
+      sum ^= sum >> 29;
     }
-  };
+    return sum;
+  }
+  static bool same(const Real* a, const Real* b) { return std::memcmp(a, b, kSize * sizeof(Real)) == 0; }
 
   template <class BlockFunction>
   void run(std::ptrdiff_t begin, std::ptrdiff_t end, BlockFunction&& f) const {
@@ -165,7 +168,7 @@ class StencilBlocks {
 
   std::vector<Block> blocks_;            // by planes, within them by components, then by rows
   std::vector<Segment> segments_;        // blocks of one component in one plane
-  std::vector<Real> values_;
+  UnsetVector<Real> values_;
   std::vector<std::int32_t> row_begin_;  // in blocks_, of every row; one more at the end
   long generation_ = -2;                 // of the steady rows that it was built with
   Lattice lattice_;
@@ -236,11 +239,10 @@ void StencilBlocks<Real, Count>::buildPlane(int k, const std::vector<int>& first
           std::copy_n(row[q].data() + block * kLanes, kLanes, candidate.data() + q * kLanes);
         }
         if (std::all_of(candidate.begin(), candidate.end(), [](Real value) { return value == Real(0); })) continue;
-        const auto same = [&](std::int32_t pattern) {
-          return pattern >= 0 &&
-                 std::memcmp(plane.values.data() + pattern * kSize, candidate.data(), kSize * sizeof(Real)) == 0;
+        const auto fits = [&](std::int32_t pattern) {
+          return pattern >= 0 && same(plane.values.data() + pattern * kSize, candidate.data());
         };
-        std::int32_t pattern = same(above[block]) ? above[block] : same(last) ? last : -1;
+        std::int32_t pattern = fits(above[block]) ? above[block] : fits(last) ? last : -1;
         if (pattern < 0) pattern = plane.add(candidate.data(), -1);
         above[block] = last = pattern;
         blocks.push_back({static_cast<std::int32_t>(start + block * kLanes), pattern});
@@ -250,46 +252,76 @@ void StencilBlocks<Real, Count>::buildPlane(int k, const std::vector<int>& first
   }
 }
 
-// One after the other, so that patterns are numbered the same way on any number of threads. Uses up the planes.
+// One after the other, so that patterns are numbered the same way on any number of threads. Returns how many there are.
 template <class Real, int Count>
-void StencilBlocks<Real, Count>::merge(std::vector<Plane>& planes, int components, std::size_t patterns_before) {
-  const int rows = lattice_.faceEnd(1);
-  blocks_.clear();
-  segments_.clear();
-  values_.clear();
+std::int32_t StencilBlocks<Real, Count>::numberPatterns(std::vector<Plane>& planes, std::size_t patterns_before) const {
   std::size_t most = 0;
-  for (const Plane& plane : planes) most += plane.values.size();
-  values_.reserve(most);
-  row_begin_.assign(1, 0);
-  std::unordered_map<std::string_view, std::int32_t, PatternHash> known;
-  std::vector<std::int32_t> number, renumbered(patterns_before, -1);
+  for (const Plane& plane : planes) most += plane.origin.size();
+  std::size_t slots = 64;
+  while (slots < 2 * most) slots *= 2;
+  std::vector<std::int32_t> table(slots, -1), renumbered(patterns_before, -1);
+  std::vector<std::pair<const Real*, std::uint64_t>> known;
+  known.reserve(most);
   for (Plane& plane : planes) {
-    number.clear();
+    plane.number.resize(plane.origin.size());
     for (std::size_t p = 0; p < plane.origin.size(); ++p) {
       const std::int32_t origin = plane.origin[p];
       std::int32_t found = origin < 0 ? -1 : renumbered[origin];
       if (found < 0) {
         const Real* values = plane.values.data() + p * kSize;
-        const std::string_view text(reinterpret_cast<const char*>(values), kSize * sizeof(Real));
-        const auto entry = known.find(text);
-        if (entry != known.end()) {
-          found = entry->second;
-        } else {
-          found = static_cast<std::int32_t>(values_.size() / kSize);
-          values_.insert(values_.end(), values, values + kSize);  // there is room: none moves, and the key stays
-          known.emplace(std::string_view(reinterpret_cast<const char*>(values_.data() + found * kSize), text.size()),
-                        found);
+        const std::uint64_t hash = plane.hash[p];
+        const auto isThis = [&](const auto& other) { return other.second == hash && same(other.first, values); };
+        std::size_t slot = hash & (slots - 1);
+        while (table[slot] >= 0 && !isThis(known[table[slot]])) slot = (slot + 1) & (slots - 1);
+        if (table[slot] < 0) {
+          table[slot] = static_cast<std::int32_t>(known.size());
+          known.emplace_back(values, hash);
         }
+        found = table[slot];
         if (origin >= 0) renumbered[origin] = found;
       }
-      number.push_back(found);
+      plane.number[p] = found;
+    }
+  }
+  return static_cast<std::int32_t>(known.size());
+}
+
+// Uses up the planes.
+template <class Real, int Count>
+void StencilBlocks<Real, Count>::merge(std::vector<Plane>& planes, int components, std::size_t patterns_before) {
+  const int rows = lattice_.faceEnd(1);
+  values_.resize(numberPatterns(planes, patterns_before) * kSize);
+  // Where each plane's part begins, and which patterns it is the first to have.
+  std::vector<std::int32_t> first_block, first_pattern;
+  segments_.clear();
+  std::int32_t count = 0, patterns = 0;
+  for (const Plane& plane : planes) {
+    first_block.push_back(count);
+    first_pattern.push_back(patterns);
+    for (int component = 0; component < components; ++component) {
+      const auto size = static_cast<std::int32_t>(plane.blocks[component].size());
+      if (size > 0) segments_.push_back({component, count, count + size});
+      count += size;
+    }
+    for (const std::int32_t number : plane.number) patterns = std::max(patterns, number + 1);
+  }
+  blocks_.resize(count);
+  row_begin_.resize(planes.size() * components * rows + 1);
+  row_begin_[0] = 0;
+#pragma omp parallel for schedule(static, kPlanesInTurn)
+  for (std::size_t k = 0; k < planes.size(); ++k) {
+    Plane& plane = planes[k];
+    std::int32_t begin = first_block[k], next = first_pattern[k];
+    for (std::size_t p = 0; p < plane.number.size(); ++p) {
+      if (plane.number[p] != next) continue;
+      std::copy_n(plane.values.data() + p * kSize, kSize, values_.data() + next * kSize);
+      ++next;
     }
     for (int component = 0; component < components; ++component) {
-      const auto begin = static_cast<std::int32_t>(blocks_.size());
-      for (const Block& block : plane.blocks[component]) blocks_.push_back({block.place, number[block.pattern]});
-      for (int j = 0; j < rows; ++j) row_begin_.push_back(begin + plane.row_ends[component * rows + j]);
-      const auto end = static_cast<std::int32_t>(blocks_.size());
-      if (end > begin) segments_.push_back({component, begin, end});
+      for (int j = 0; j < rows; ++j) {
+        row_begin_[(k * components + component) * rows + j + 1] = begin + plane.row_ends[component * rows + j];
+      }
+      for (const Block& block : plane.blocks[component]) blocks_[begin++] = {block.place, plane.number[block.pattern]};
     }
     plane = {};
   }
