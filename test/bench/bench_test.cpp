@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <string>
 
@@ -53,6 +55,34 @@ TEST(Bench, WritesALineOfJsonWithEveryKey) {
     EXPECT_EQ(line.find("\"contact_factor\": null"), std::string::npos) << line;
   }
   EXPECT_EQ(count, 2);
+  std::remove(file.c_str());
+}
+
+double valueOf(const std::string& key, const std::string& line) {
+  const auto at = line.find("\"" + key + "\": ");
+  return at == std::string::npos ? NAN : std::atof(line.c_str() + at + key.size() + 4);
+}
+
+// What a step costs, counted, not timed: a change that makes it a tenth more expensive has to say so here. The figures
+// are those of commit 021cf61 for a sphere in a full tank.
+TEST(Bench, AStepTakesNoMoreWorkThanItDid) {
+  const struct {
+    double number, flops, bytes, iterations, memory;  // flops and streamed bytes a step and cell
+  } budgets[] = {{1.0, 5800.0, 5800.0, 5.6, 1550.0}, {100.0, 15400.0, 13000.0, 9.0, 1740.0}};
+  constexpr double kMore = 1.1;
+  const std::string file = testing::TempDir() + "work.json";
+  const Result result = run("--sizes 32 --threads 1 --viscous-number 1,100 --json " + file);
+  ASSERT_EQ(result.code, 0) << result.output;
+  std::ifstream lines(file);
+  std::string line;
+  for (const auto& budget : budgets) {
+    ASSERT_TRUE(std::getline(lines, line));
+    EXPECT_EQ(valueOf("viscous_number", line), budget.number);
+    EXPECT_LT(valueOf("flops_per_cell", line), kMore * budget.flops) << line;
+    EXPECT_LT(valueOf("streamed_bytes_per_cell", line), kMore * budget.bytes) << line;
+    EXPECT_LT(valueOf("iterations", line), kMore * budget.iterations) << line;
+    EXPECT_LT(valueOf("bytes_per_cell", line), kMore * budget.memory) << line;
+  }
   std::remove(file.c_str());
 }
 
