@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 
 #include "solve/kernel_work.h"
 
@@ -11,19 +12,18 @@ namespace {
 // Collects columns entry by entry; what falls on the same unknown of the same body is summed.
 class Collector {
  public:
-  // head: a place for each unknown, -1 on entry and in the end.
-  Collector(const StepProblem& problem, std::vector<std::int32_t>& head)
-      : problem_(problem), lattice_(problem.grid.lattice), head_(head) {
-    head_.resize(4 * lattice_.size, -1);
+  explicit Collector(const StepProblem& problem) : problem_(problem), lattice_(problem.grid.lattice) {
+    std::size_t most = problem.rows.divergence.size();
+    for (int a = 0; a < 3; ++a) {
+      most += 2 * problem.rows.normal[a].size() + 4 * problem.rows.shear[a].size() + problem.rows.drag[a].size();
+    }
+    std::size_t slots = 64;
+    while (slots < 2 * most) slots *= 2;
+    table_.assign(slots, -1);
   }
-  ~Collector() {
-    for (const Sum& sum : sums_) head_[sum.place] = -1;
-  }
-  Collector(const Collector&) = delete;
-  Collector& operator=(const Collector&) = delete;
 
   struct Sum {
-    std::int32_t place, body, next;
+    std::int32_t place, body;
     Vector6d coefficient;
   };
 
@@ -39,13 +39,19 @@ class Collector {
 
  private:
   void add(std::ptrdiff_t place, int body, const Vector6d& coefficient) {
-    for (std::int32_t i = head_[place]; i >= 0; i = sums_[i].next) {
-      if (sums_[i].body != body) continue;
+    const std::uint64_t key = static_cast<std::uint64_t>(place) * 0x9E3779B97F4A7C15u + static_cast<std::uint64_t>(body);
+    const std::size_t mask = table_.size() - 1;
+    for (std::size_t slot = (key ^ (key >> 32)) & mask;; slot = (slot + 1) & mask) {
+      const std::int32_t i = table_[slot];
+      if (i < 0) {
+        table_[slot] = static_cast<std::int32_t>(sums_.size());
+        sums_.push_back({static_cast<std::int32_t>(place), body, coefficient});
+        return;
+      }
+      if (sums_[i].place != place || sums_[i].body != body) continue;
       sums_[i].coefficient += coefficient;
       return;
     }
-    sums_.push_back({static_cast<std::int32_t>(place), body, head_[place], coefficient});
-    head_[place] = static_cast<std::int32_t>(sums_.size()) - 1;
   }
   // A face in the halo of a periodic axis is one inside.
   std::ptrdiff_t interior(std::ptrdiff_t f) const {
@@ -60,7 +66,7 @@ class Collector {
 
   const StepProblem& problem_;
   const Lattice& lattice_;
-  std::vector<std::int32_t>& head_;
+  std::vector<std::int32_t> table_;  // open addressing: places in sums_; -1: free
   std::vector<Sum> sums_;
 };
 
@@ -94,7 +100,7 @@ void BodyColumns<double>::set(const StepProblem& p, const Eigen::VectorXd& scale
   entries_.clear();
   begin_.assign(n + 1, 0);
   if (n == 0) return;
-  Collector collector(p, head_);
+  Collector collector(p);
   const auto square = [&](const BodyRow* first, const BodyRow* last, double weight) {
     for (const BodyRow* r = first; r != last; ++r) {
       for (const BodyRow* q = first; q != last; ++q) {

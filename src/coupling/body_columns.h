@@ -33,7 +33,6 @@ class BodyColumns {
   std::vector<Entry> entries_;  // by bodies
   std::vector<std::size_t> begin_;
   Eigen::MatrixXd A_vv_;
-  std::vector<std::int32_t> head_;  // of set(), per place; -1 between calls
 };
 
 }  // namespace monolith

@@ -76,14 +76,16 @@ void StepOperator::bodyForces(StepVector& x, std::vector<Vector6d>& forces) {
   for (const BodyRow& row : rows_->divergence) forces[row.body] -= row.coefficient * x.pressure[row.sample];
   if (!c.viscous) return;
   for (auto& field : x.velocity) fillHalo(l, field);
-  if (solid_.size() != l.size) solid_.assign(l.size, 0.0);
-  // Bodies that share a sample feel each other's motion: a stress is liquid(sample) + weight(sample) * solid_[sample].
+  samples_.resize(l.size, 0.0);
+  std::vector<double>& solid = samples_;
+  // Bodies that share a sample feel each other's motion: a stress is liquid(sample) + weight(sample) * solid[sample].
   const auto add = [&](const std::vector<BodyRow>& rows, auto&& liquid, auto&& weight) {
-    for (const BodyRow& row : rows) solid_[row.sample] += row.coefficient.dot(x.bodies[row.body]);
+    for (const BodyRow& row : rows) solid[row.sample] = 0.0;
+    for (const BodyRow& row : rows) solid[row.sample] += row.coefficient.dot(x.bodies[row.body]);
     for (const BodyRow& row : rows) {
-      forces[row.body] += row.coefficient * (liquid(row.sample) + weight(row.sample) * solid_[row.sample]);
+      forces[row.body] += row.coefficient * (liquid(row.sample) + weight(row.sample) * solid[row.sample]);
     }
-    for (const BodyRow& row : rows) solid_[row.sample] = 0.0;
+    for (const BodyRow& row : rows) solid[row.sample] = 0.0;
   };
   for (int a = 0; a < 3; ++a) {
     const auto& u = x.velocity[a];
@@ -111,12 +113,12 @@ void StepOperator::bodyForces(StepVector& x, std::vector<Vector6d>& forces) {
 double StepOperator::largestDivergence(StepVector& x) {
   const Lattice& l = coefficients_->lattice;
   for (auto& field : x.velocity) fillHalo(l, field);
-  divergence_.resize(l.size, 0.0);
-  computeDivergence(*coefficients_, x.velocity, divergence_);
+  samples_.resize(l.size, 0.0);
+  computeDivergence(*coefficients_, x.velocity, samples_);
   for (const BodyRow& row : rows_->divergence) {
-    divergence_[row.sample] += row.coefficient.dot(x.bodies[row.body]);
+    samples_[row.sample] += row.coefficient.dot(x.bodies[row.body]);
   }
-  const double* divergence = divergence_.data();
+  const double* divergence = samples_.data();
   double largest = 0.0;
 #pragma omp parallel for simd schedule(static) reduction(max : largest)
   for (std::size_t i = 0; i < l.size; ++i) largest = std::max(largest, std::abs(divergence[i]));

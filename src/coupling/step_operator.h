@@ -43,8 +43,7 @@ class StepOperator {
   const StaggeredCoefficients<double>* coefficients_ = nullptr;
   const BodyRows* rows_ = nullptr;
   StressSamples<double> stress_;
-  std::vector<double> solid_;  // per sample; zero between calls
-  std::vector<double> divergence_;
+  std::vector<double> samples_;  // work space, per sample
 };
 
 }  // namespace monolith

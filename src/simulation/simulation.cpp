@@ -109,8 +109,9 @@ StepReport Simulation::step() {
       if (m.secondOrder() && m.state.substeps < kFirstParts.size()) {
         dt = std::min(dt, kFirstParts[m.state.substeps] * m.scene.time_step);
       }
-      // A sub-step that fails leaves the state as it was; those before it have to be taken back.
-      if (step.substeps == 0 && left - dt > 1e-9 * m.scene.time_step) m.before = m.state;
+      // A sub-step that fails leaves the state as it was; those before it have to be taken back. Where there are none,
+      // the memory of a copy is given back.
+      if (step.substeps == 0) m.before = left - dt > 1e-9 * m.scene.time_step ? m.state : SimulationState();
       good = m.substep(dt, step);
       ++step.substeps;
       left -= dt;
