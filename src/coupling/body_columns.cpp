@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "solve/index_table.h"
 #include "solve/kernel_work.h"
 
 namespace monolith {
@@ -12,15 +13,8 @@ namespace {
 // Collects columns entry by entry; what falls on the same unknown of the same body is summed.
 class Collector {
  public:
-  explicit Collector(const StepProblem& problem) : problem_(problem), lattice_(problem.grid.lattice) {
-    std::size_t most = problem.rows.divergence.size();
-    for (int a = 0; a < 3; ++a) {
-      most += 2 * problem.rows.normal[a].size() + 4 * problem.rows.shear[a].size() + problem.rows.drag[a].size();
-    }
-    std::size_t slots = 64;
-    while (slots < 2 * most) slots *= 2;
-    table_.assign(slots, -1);
-  }
+  explicit Collector(const StepProblem& problem)
+      : problem_(problem), lattice_(problem.grid.lattice), table_(mostEntries(problem.rows)) {}
 
   struct Sum {
     std::int32_t place, body;
@@ -38,19 +32,19 @@ class Collector {
   const std::vector<Sum>& sums() const { return sums_; }
 
  private:
+  static std::size_t mostEntries(const BodyRows& rows) {
+    std::size_t most = rows.divergence.size();
+    for (int a = 0; a < 3; ++a) most += 2 * rows.normal[a].size() + 4 * rows.shear[a].size() + rows.drag[a].size();
+    return most;
+  }
   void add(std::ptrdiff_t place, int body, const Vector6d& coefficient) {
     const std::uint64_t key = static_cast<std::uint64_t>(place) * 0x9E3779B97F4A7C15u + static_cast<std::uint64_t>(body);
-    const std::size_t mask = table_.size() - 1;
-    for (std::size_t slot = (key ^ (key >> 32)) & mask;; slot = (slot + 1) & mask) {
-      const std::int32_t i = table_[slot];
-      if (i < 0) {
-        table_[slot] = static_cast<std::int32_t>(sums_.size());
-        sums_.push_back({static_cast<std::int32_t>(place), body, coefficient});
-        return;
-      }
-      if (sums_[i].place != place || sums_[i].body != body) continue;
+    const std::int32_t i = table_.number(
+        key ^ (key >> 32), [&](std::int32_t k) { return sums_[k].place == place && sums_[k].body == body; });
+    if (i < static_cast<std::int32_t>(sums_.size())) {
       sums_[i].coefficient += coefficient;
-      return;
+    } else {
+      sums_.push_back({static_cast<std::int32_t>(place), body, coefficient});
     }
   }
   // A face in the halo of a periodic axis is one inside.
@@ -66,7 +60,7 @@ class Collector {
 
   const StepProblem& problem_;
   const Lattice& lattice_;
-  std::vector<std::int32_t> table_;  // open addressing: places in sums_; -1: free
+  IndexTable table_;  // of sums_
   std::vector<Sum> sums_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace monolith {
 namespace {
@@ -14,38 +15,38 @@ struct Nearest {
   Cell steps = {0, 0, 0};
 };
 
-// Index of the cell next to `at` along an axis, which is moved there; -1 beyond a wall.
-std::ptrdiff_t step(const Lattice& l, Cell& at, int axis, int direction) {
-  at[axis] += direction;
-  if (l.periodic[axis]) at[axis] = (at[axis] + l.n[axis]) % l.n[axis];
-  return at[axis] < 0 || at[axis] >= l.n[axis] ? -1 : l.index(at[0], at[1], at[2]);
-}
-
-// f(cell, its index, axis, direction): for the neighbours of a cell in the tank.
+// f(cell, axis, direction): for the neighbours of a cell in the tank.
 template <class Function>
-void forEachNeighbour(const Lattice& l, const Cell& here, Function&& f) {
+void forEachNeighbour(const Lattice& l, std::ptrdiff_t cell, Function&& f) {
+  const Cell here = l.cell(cell);
   for (int a = 0; a < 3; ++a) {
     for (const int direction : {-1, 1}) {
-      Cell next = here;
-      const auto n = step(l, next, a, direction);
-      if (n >= 0) f(next, n, a, direction);
+      Cell at = here;
+      at[a] += direction;
+      if (l.periodic[a]) at[a] = (at[a] + l.n[a]) % l.n[a];
+      if (at[a] >= 0 && at[a] < l.n[a]) f(l.index(at[0], at[1], at[2]), a, direction);
     }
   }
+}
+
+void sortOnce(std::vector<std::ptrdiff_t>& cells) {
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
 }
 
 // Breadth-first from cells with pressure, in the lattice's order. find(n): what is known of cell n; null where the
 // search may not go.
 template <class Find>
-void spread(const Lattice& l, std::vector<Cell> front, Find&& find) {
+void spread(const Lattice& l, std::vector<std::ptrdiff_t> front, Find&& find) {
   std::vector<Nearest> from;
-  for (const Cell& cell : front) from.push_back({l.index(cell[0], cell[1], cell[2])});
+  for (const auto c : front) from.push_back({c});
   for (std::size_t at = 0; at < front.size(); ++at) {
-    forEachNeighbour(l, Cell(front[at]), [&](const Cell& next, std::ptrdiff_t n, int axis, int direction) {
+    forEachNeighbour(l, front[at], [&](std::ptrdiff_t n, int axis, int direction) {
       Nearest* nearest = find(n);
       if (nearest == nullptr || nearest->cell >= 0) return;
       *nearest = from[at];
       nearest->steps[axis] += direction;
-      front.push_back(next);
+      front.push_back(n);
       from.push_back(*nearest);
     });
   }
@@ -56,16 +57,13 @@ std::vector<Nearest> nearestAlong(const Lattice& l, const std::vector<std::uint8
                                   const std::vector<std::ptrdiff_t>& contact) {
   std::vector<std::ptrdiff_t> rim;
   for (const auto c : contact) {
-    forEachNeighbour(l, l.cell(c), [&](const Cell&, std::ptrdiff_t n, int, int) {
+    forEachNeighbour(l, c, [&](std::ptrdiff_t n, int, int) {
       if (has_pressure[n]) rim.push_back(n);
     });
   }
-  std::sort(rim.begin(), rim.end());
-  rim.erase(std::unique(rim.begin(), rim.end()), rim.end());
-  std::vector<Cell> front;
-  for (const auto c : rim) front.push_back(l.cell(c));
+  sortOnce(rim);
   std::vector<Nearest> out(contact.size());
-  spread(l, std::move(front), [&](std::ptrdiff_t n) -> Nearest* {
+  spread(l, std::move(rim), [&](std::ptrdiff_t n) -> Nearest* {
     const auto place = std::lower_bound(contact.begin(), contact.end(), n);
     return place == contact.end() || *place != n ? nullptr : &out[place - contact.begin()];
   });
@@ -75,7 +73,7 @@ std::vector<Nearest> nearestAlong(const Lattice& l, const std::vector<std::uint8
 // Of all cells without pressure.
 std::vector<Nearest> nearestThrough(const Lattice& l, const std::vector<std::uint8_t>& has_pressure) {
   std::vector<Nearest> out(l.size);
-  std::vector<Cell> front;
+  std::vector<std::ptrdiff_t> front;
   for (int k = 0; k < l.n[2]; ++k) {
     for (int j = 0; j < l.n[1]; ++j) {
       for (int i = 0; i < l.n[0]; ++i) {
@@ -83,8 +81,8 @@ std::vector<Nearest> nearestThrough(const Lattice& l, const std::vector<std::uin
         if (!has_pressure[c]) continue;
         out[c].cell = c;
         bool ends = false;
-        forEachNeighbour(l, {i, j, k}, [&](const Cell&, std::ptrdiff_t n, int, int) { ends |= !has_pressure[n]; });
-        if (ends) front.push_back({i, j, k});
+        forEachNeighbour(l, c, [&](std::ptrdiff_t n, int, int) { ends |= !has_pressure[n]; });
+        if (ends) front.push_back(c);
       }
     }
   }
@@ -119,8 +117,7 @@ std::vector<EnclosedWeight> moveEnclosedRows(const MacGrid& grid, const SolidFra
   // Along the contact first: through a body only if the contact has no rim.
   std::vector<std::ptrdiff_t> contact;
   for (const BodyRow& row : rows.enclosed) contact.push_back(row.sample);
-  std::sort(contact.begin(), contact.end());
-  contact.erase(std::unique(contact.begin(), contact.end()), contact.end());
+  sortOnce(contact);
   const std::vector<Nearest> along = nearestAlong(l, coefficients.has_pressure, contact);
   std::vector<Nearest> through;
   for (const BodyRow& row : rows.enclosed) {

@@ -76,6 +76,7 @@ void StepOperator::bodyForces(StepVector& x, std::vector<Vector6d>& forces) {
   for (const BodyRow& row : rows_->divergence) forces[row.body] -= row.coefficient * x.pressure[row.sample];
   if (!c.viscous) return;
   for (auto& field : x.velocity) fillHalo(l, field);
+  // Cleared before for what largestDivergence() left, and after, so that it finds nothing beyond the cells.
   samples_.resize(l.size, 0.0);
   std::vector<double>& solid = samples_;
   // Bodies that share a sample feel each other's motion: a stress is liquid(sample) + weight(sample) * solid[sample].

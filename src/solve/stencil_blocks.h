@@ -8,6 +8,7 @@
 
 #include <omp.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -15,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "solve/index_table.h"
 #include "solve/lattice.h"
 #include "solve/steady_rows.h"
 #include "solve/whole_fields.h"
@@ -77,7 +79,6 @@ class StencilBlocks {
   std::size_t blocks() const { return blocks_.size(); }
   std::size_t lanes() const { return blocks_.size() * kLanes; }
   std::size_t patterns() const { return values_.size() / (Count * kLanes); }
-  std::size_t bytes() const { return blocks_.size() * sizeof(Block) + values_.size() * sizeof(Real); }
 
   // The same in another precision.
   template <class To>
@@ -89,7 +90,7 @@ class StencilBlocks {
     std::memcpy(out.segments_.data(), segments_.data(), segments_.size() * sizeof(Segment));
     out.values_.resize(values_.size());
 #pragma omp parallel for simd schedule(static)
-    for (std::size_t i = 0; i < values_.size(); ++i) out.values_[i] = static_cast<To>(values_[i]);
+    for (Eigen::Index i = 0; i < values_.size(); ++i) out.values_[i] = static_cast<To>(values_[i]);
     out.lattice_ = lattice_;
     out.anew_ = anew_;
     out.build_ = build_;
@@ -108,6 +109,7 @@ class StencilBlocks {
     std::int32_t component, begin, end;
   };
   static constexpr std::size_t kSize = Count * kLanes;
+  using Values = Eigen::Array<Real, Eigen::Dynamic, 1>;  // resized, it is not written by one thread first
 
   // What a build makes of one plane of the lattice.
   struct Plane {
@@ -128,7 +130,7 @@ class StencilBlocks {
   // What the last build has left.
   struct Last {
     std::vector<Block> blocks;
-    UnsetVector<Real> values;
+    Values values;
     std::vector<std::int32_t> row_begin;
 
     std::size_t patterns() const { return values.size() / kSize; }
@@ -168,7 +170,7 @@ class StencilBlocks {
 
   std::vector<Block> blocks_;            // by planes, within them by components, then by rows
   std::vector<Segment> segments_;        // blocks of one component in one plane
-  UnsetVector<Real> values_;
+  Values values_;
   std::vector<std::int32_t> row_begin_;  // in blocks_, of every row; one more at the end
   long generation_ = -2;                 // of the steady rows that it was built with
   Lattice lattice_;
@@ -192,7 +194,7 @@ void StencilBlocks<Real, Count>::build(const Lattice& l, const std::vector<int>&
 #pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int k = 0; k < l.faceEnd(2); ++k) buildPlane(k, first, fill, keeps ? steady : nullptr, last, planes[k]);
   const std::size_t patterns_before = last.patterns();
-  last.values = {};
+  last.values.resize(0);
   merge(planes, components, patterns_before);
   findLost(components, last);
 }
@@ -257,11 +259,9 @@ template <class Real, int Count>
 std::int32_t StencilBlocks<Real, Count>::numberPatterns(std::vector<Plane>& planes, std::size_t patterns_before) const {
   std::size_t most = 0;
   for (const Plane& plane : planes) most += plane.origin.size();
-  std::size_t slots = 64;
-  while (slots < 2 * most) slots *= 2;
-  std::vector<std::int32_t> table(slots, -1), renumbered(patterns_before, -1);
+  IndexTable table(most);
+  std::vector<std::int32_t> renumbered(patterns_before, -1);
   std::vector<std::pair<const Real*, std::uint64_t>> known;
-  known.reserve(most);
   for (Plane& plane : planes) {
     plane.number.resize(plane.origin.size());
     for (std::size_t p = 0; p < plane.origin.size(); ++p) {
@@ -270,20 +270,15 @@ std::int32_t StencilBlocks<Real, Count>::numberPatterns(std::vector<Plane>& plan
       if (found < 0) {
         const Real* values = plane.values.data() + p * kSize;
         const std::uint64_t hash = plane.hash[p];
-        const auto isThis = [&](const auto& other) { return other.second == hash && same(other.first, values); };
-        std::size_t slot = hash & (slots - 1);
-        while (table[slot] >= 0 && !isThis(known[table[slot]])) slot = (slot + 1) & (slots - 1);
-        if (table[slot] < 0) {
-          table[slot] = static_cast<std::int32_t>(known.size());
-          known.emplace_back(values, hash);
-        }
-        found = table[slot];
+        found =
+            table.number(hash, [&](std::int32_t i) { return known[i].second == hash && same(known[i].first, values); });
+        if (found == static_cast<std::int32_t>(known.size())) known.emplace_back(values, hash);
         if (origin >= 0) renumbered[origin] = found;
       }
       plane.number[p] = found;
     }
   }
-  return static_cast<std::int32_t>(known.size());
+  return table.count();
 }
 
 // Uses up the planes.

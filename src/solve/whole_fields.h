@@ -1,32 +1,10 @@
 #pragma once
-// Long arrays that all threads write: zeros, copies, and what is left unset for them.
+// Long arrays of zeros, and copies of long arrays, written by all threads.
 
 #include <cstddef>
-#include <memory>
-#include <utility>
 #include <vector>
 
 namespace monolith {
-
-// Leaves entries unset that no value is given for: one that is written by all threads anyway is not written by one
-// before.
-template <class Value>
-struct UnsetAllocator : std::allocator<Value> {
-  template <class Other>
-  struct rebind {
-    using other = UnsetAllocator<Other>;
-  };
-  template <class Other>
-  void construct(Other* place) noexcept {
-    ::new (static_cast<void*>(place)) Other;
-  }
-  template <class Other, class... Arguments>
-  void construct(Other* place, Arguments&&... arguments) {
-    ::new (static_cast<void*>(place)) Other(std::forward<Arguments>(arguments)...);
-  }
-};
-template <class Value>
-using UnsetVector = std::vector<Value, UnsetAllocator<Value>>;
 
 template <class Value>
 void assignZero(std::size_t size, std::vector<Value>& v) {
