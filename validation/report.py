@@ -134,7 +134,7 @@ def plotCase(name, runs, folder):
 def summaryRow(name, runs):
     judged = [r for r in runs if r['judged'] and r['error'] is not None]
     with_goal = [r for r in judged if r['goal']]
-    failed = [r for r in runs if r.get('failure')]
+    failed = [r for r in runs if r.get('failure') or r['error'] is None and r['goal']]
     missed = [r for r in with_goal if abs(r['error']) > r['goal']]
     worst = max(with_goal, key=lambda r: abs(r['error']) / r['goal'], default=None)
     orders = [order(s, 'cells_across') for s in sweeps([r for r in judged if isOwn(r)], 'cells_across')]
@@ -159,9 +159,9 @@ def caseSection(name, runs):
              '| variant | quantity | across | dt, s | tolerance | boundary | result | reference | error | goal | %s |'
              % costName(runs[0]), '|---|---|---|---|---|---|---|---|---|---|---|']
     for r in runs:
-        if r.get('failure') and r['error'] is None:
+        if r['error'] is None and (r.get('failure') or r['goal']):
             lines.append('| %s | failed: %s | %s | %s | %s | %s | | | | | |' % (
-                r['variant'], r['failure'].replace('\n', ' '), number(r['cells_across']), number(r['dt']),
+                r['variant'], r.get('failure', r['quantity'] + ' is no number').replace('\n', ' '), number(r['cells_across']), number(r['dt']),
                 number(r['tolerance']), r['discretisation']))
             continue
         goal = percent(r['goal']) if r['goal'] and r['judged'] else ''

@@ -11,7 +11,7 @@
 
 namespace monolith {
 
-// In: initial guess. Out: solution, if the report says so; otherwise untouched.
+// In: initial guess. Out: solution, if the report says so; otherwise no solution of anything.
 struct CoupledState {
   FaceField<double> velocity;    // m/s, zero where it is not resolved
   std::vector<double> pressure;  // Pa
@@ -54,7 +54,6 @@ class CoupledSystem {
                                     const Eigen::Vector3d& gravity, const CoupledOptions& options, CoupledState& state);
 
   const StepProblem& problem() const;
-  const StaggeredCoefficients<double>& coefficients() const { return problem().coefficients; }
   // Kinetic energy (J) and momentum (kg m/s) of the liquid that sticks to the bodies, when these have `twists`.
   double stickingEnergy(const std::vector<Vector6d>& twists) const;
   Eigen::Vector3d stickingMomentum(const std::vector<Vector6d>& twists) const;

@@ -113,7 +113,8 @@ CoupledReport DirectSolver::Impl::solve(const StepVector& rhs, double tolerance,
     }
     for (std::size_t i = 0; i < residual.pressure.size(); ++i) residual.pressure[i] = rhs.pressure[i] - residual.pressure[i];
     for (std::size_t b = 0; b < residual.bodies.size(); ++b) residual.bodies[b] = rhs.bodies[b] - residual.bodies[b];
-    report.residual = scale > 0.0 ? stepNorm(*problem, residual) / scale : 0.0;
+    // A right side that is no number has no solution.
+    report.residual = scale == 0.0 ? 0.0 : stepNorm(*problem, residual) / scale;
     if (report.residual <= tolerance) break;
     if (it == kRefinements) {
       std::ostringstream text;
@@ -138,7 +139,6 @@ DirectSolver::DirectSolver() : impl_(std::make_unique<Impl>()) {}
 DirectSolver::~DirectSolver() = default;
 
 void DirectSolver::prepare(StepProblem& problem) { impl_->prepare(problem); }
-const Eigen::MatrixXd& DirectSolver::compliance() const { return impl_->K; }
 
 CoupledReport DirectSolver::solve(const StepVector& rhs, const CoupledOptions& options, StepVector& x) {
   return impl_->solve(rhs, options.tolerance, x);
@@ -158,6 +158,7 @@ CoupledReport DirectSolver::solveWithContacts(const StepVector& rhs, const Conta
   CoupledReport second = impl_->solve(pushed, options.tolerance, x);
   second.solves += report.solves;
   second.friction_iterations = friction.iterations;
+  second.contact_residual = friction.residual;
   if (!friction.solved && second.status == CoupledReport::Status::kConverged) {
     std::ostringstream text;
     text << "friction of " << contacts.count() << " contacts did not reach its fixed point: the impulses still change by "

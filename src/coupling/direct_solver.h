@@ -20,8 +20,6 @@ class DirectSolver : public StepSolver {
   [[nodiscard]] CoupledReport solveWithContacts(const StepVector& rhs, const ContactRows& contacts,
                                                 const CoupledOptions& options, StepVector& x,
                                                 Eigen::VectorXd& r) override;
-  // S^-1: twists of the free bodies per impulse on them, the liquid implicit.
-  const Eigen::MatrixXd& compliance() const;
 
  private:
   struct Impl;

@@ -62,6 +62,7 @@ CoupledReport solveIteratively(StepSolver& solver, const StepProblem& problem, c
     const Eigen::VectorXd w = contacts.J * (v - K * push) + contacts.bias;
     const FrictionReport friction = solveFrictionalContact(D, w, contacts.friction, small_tolerance, r);
     report.friction_iterations += 1;
+    report.contact_residual = friction.residual;
     const Eigen::VectorXd next = contacts.J.transpose() * r;
     const double size = std::max({next.dot(K * next), push.dot(K * push), v.dot(M * v), 1e-300});
     change = std::sqrt((next - push).dot(K * (next - push)) / size);

@@ -31,8 +31,6 @@ class LiquidPreconditioner {
   // x are filled, those of r not read.
   void apply(const float* r, float flux_scale, float* x);
 
-  std::size_t bytes() const { return velocity_.bytes() + pressure_.bytes() + 2 * g_.size() * sizeof(float); }
-
  private:
   bool projects() const;
 

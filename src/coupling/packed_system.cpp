@@ -61,11 +61,6 @@ void PackedSystem::set(StepProblem& problem) {
   bodies_ += columns_.ownResistance();
 }
 
-std::size_t PackedSystem::bytes() const {
-  return faces_.bytes() + faces_single_.bytes() + cells_.bytes() + cells_single_.bytes() + preconditioner_.bytes() +
-         krylov_.bytes();
-}
-
 void PackedSystem::updateSchur() {
   const StepProblem& p = *problem_;
   const bool same = resistance_of_ == p.free && resistance_number_ >= 0.0 &&

@@ -29,7 +29,6 @@ class PackedSystem {
   std::size_t liquidSize() const { return 4 * lattice().size; }
   Eigen::Index bodySize() const { return problem_->bodyUnknowns(); }
   std::size_t size() const { return liquidSize() + static_cast<std::size_t>(bodySize()); }
-  std::size_t bytes() const;
 
   // Between fields and vectors, without border; forces and velocities of bodies scale differently.
   void packForces(const StepVector& v, std::vector<double>& x) const { pack(v, true, x); }

@@ -85,7 +85,7 @@ double ReferenceSolver::Impl::residual(const StepVector& rhs, const Eigen::Vecto
   scatterBodies(*problem, gatherBodies(*problem, r.bodies) - gatherBodies(*problem, rhs.bodies) - contact_forces,
                 r.bodies);
   const double scale = stepNorm(*problem, rhs);
-  return scale > 0.0 ? stepNorm(*problem, r) / scale : 0.0;
+  return scale == 0.0 ? 0.0 : stepNorm(*problem, r) / scale;
 }
 
 CoupledReport ReferenceSolver::Impl::minimise(const StepVector& rhs, const Eigen::VectorXd& body_forces,

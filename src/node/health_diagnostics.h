@@ -26,7 +26,6 @@ class HealthDiagnostics {
   explicit HealthDiagnostics(const std::string& scene_name);
 
   void countRefusal(const std::string& message);
-  long refusals() const { return refusals_; }
   // Publishes when due, or at once with `force`.
   void update(const NodeHealth& health, bool force);
 

@@ -78,9 +78,6 @@ class ParameterReader {
     if (!errors_.empty()) throw OptionsError(errors_);
   }
 
-  // A parameter of another's, here of diagnostic_updater.
-  void ignore(const std::string& name) { known_.push_back(name); }
-
  private:
   bool takes(const std::string& name) {
     known_.push_back(name);
@@ -116,7 +113,9 @@ NodeOptions readNodeOptions(const XmlRpcValue& parameters) {
   reader.read("wrench_timeout", options.wrench_timeout, false);
   reader.read("wait_for_subscribers", options.wait_for_subscribers);
   reader.read("progress", options.progress);
-  reader.ignore("diagnostic_period");
+  // diagnostic_updater reads it by itself, and takes what is no number for its default.
+  double diagnostic_period = 1.0;
+  reader.read("diagnostic_period", diagnostic_period, false);
   reader.require(!options.scene.empty(), "scene", "the path of a scene file or the name of a shipped scene");
   reader.require(!options.world_frame.empty() && options.world_frame[0] != '/', "world_frame",
                  "a tf frame without a leading slash");

@@ -30,6 +30,7 @@ TankNode::TankNode(ros::NodeHandle& global, ros::NodeHandle& local, ros::Callbac
   servers_.push_back(local.advertiseService("reset_simulation", &TankNode::reset, this));
   servers_.push_back(local.advertiseService("step", &TankNode::stepPhysics, this));
   health_.paced = options.paced;
+  health_.paused = options.start_paused;
   if (options.progress && options.duration > 0.0) progress_ = std::make_unique<ProgressBar>(options.duration);
   const double possible = 1.0 / scene.time_step;
   if (options.state_rate > possible * (1.0 + 1e-9)) {
@@ -46,7 +47,7 @@ bool TankNode::run() {
   if (options_.wait_for_subscribers) waitForSubscribers();
   publisher_.publishConstant();
   publisher_.publish(control_.simulation().report(), 0.0, true);
-  setPaused(options_.start_paused);
+  setPaused(health_.paused);  // unless a caller has asked for something else by now
   // A bounded run has nobody who would unpause it: a failed step ends it.
   const auto hasFailed = [this] { return options_.duration > 0.0 && health_.failed; };
   while (ros::ok() && !isFinished() && !hasFailed()) {

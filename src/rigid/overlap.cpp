@@ -96,7 +96,8 @@ std::string metres(double length) {
 
 }  // namespace
 
-std::string describeOverlaps(const std::vector<RigidBody>& bodies, const TankWalls& walls, double tolerance) {
+std::string describeOverlaps(const std::vector<RigidBody>& bodies, const TankWalls& walls, double tolerance, int only) {
+  const auto counts = [&](std::size_t body) { return only < 0 || body == static_cast<std::size_t>(only); };
   std::map<const TriangleMesh*, std::shared_ptr<const MeshSurface>> surfaces;
   std::vector<std::vector<Solid>> solids(bodies.size());
   std::string lines;
@@ -113,7 +114,7 @@ std::string describeOverlaps(const std::vector<RigidBody>& bodies, const TankWal
       box.extend(bounds(shape, bodies[i].pose()));
     }
     for (int axis = 0; axis < 3; ++axis) {
-      if (walls.periodic[axis]) continue;
+      if (walls.periodic[axis] || !counts(i)) continue;
       const double below = walls.inside.min()[axis] - box.min()[axis];
       const double above = box.max()[axis] - walls.inside.max()[axis];
       const std::string name(1, "xyz"[axis]);
@@ -124,6 +125,7 @@ std::string describeOverlaps(const std::vector<RigidBody>& bodies, const TankWal
   }
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     for (std::size_t j = i + 1; j < bodies.size(); ++j) {
+      if (!counts(i) && !counts(j)) continue;
       double deepest = 0.0;
       for (const Solid& a : solids[i])
         for (const Solid& b : solids[j]) deepest = std::max(deepest, depth(a, b));

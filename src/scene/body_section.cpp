@@ -33,6 +33,8 @@ void readName(const YamlMap& map, BodyDescription& body) {
     map.fail("name", "a letter followed by letters, digits or _, because topics and tf frames are named after it");
   } else if (body.name == "world") {
     map.fail("name", "another name, \"world\" is the tank's own frame");
+  } else if (body.name == kWallsName) {
+    map.fail("name", "another name, \"walls\" is the tank's own in contact.pairs");
   }
 }
 

@@ -5,11 +5,9 @@
 namespace monolith {
 namespace {
 
-constexpr char kWalls[] = "walls";
-
 // Names that a pair may use: bodies, their materials and the walls.
 std::vector<std::string> surfaceNames(const std::vector<BodyDescription>& bodies) {
-  std::vector<std::string> names{kWalls};
+  std::vector<std::string> names{kWallsName};
   for (const BodyDescription& body : bodies) {
     names.push_back(body.name);
     if (!body.material.empty()) names.push_back(body.material);

@@ -50,6 +50,17 @@ void readHerschelBulkley(const YamlMap& map, RheologyDescription& rheology) {
   map.read("index", rheology.index, Range::kPositive);
   map.read("regularisation", rheology.regularisation, Range::kPositive);
   readLimits(map, rheology.index != 1.0, rheology);
+  if (rheology.index != 1.0) return;
+  // The law's own limits stand for those that are not given.
+  const double most = rheology.consistency + rheology.regularisation * rheology.yield_stress;
+  if (rheology.maximum_viscosity > 0.0 && rheology.minimum_viscosity <= 0.0 &&
+      rheology.maximum_viscosity < rheology.consistency) {
+    map.fail("maximum_viscosity", "at least consistency, the least viscosity of this law");
+  }
+  if (rheology.minimum_viscosity > most && rheology.maximum_viscosity <= 0.0) {
+    map.fail("minimum_viscosity",
+             "at most consistency + regularisation * yield_stress, the largest viscosity of this law");
+  }
 }
 
 }  // namespace

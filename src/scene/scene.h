@@ -98,6 +98,8 @@ enum class TimeStepping { kBackwardEuler, kBdf2 };
 // A sub-step in which something crosses more cells is of first order (simulation/time_stepping.h).
 constexpr double kMostSecondOrderCells = 0.75;
 
+constexpr int kMostThreads = 1024;  // more than there are; a count that cannot be had ends the process
+
 struct SolverDescription {
   SolverName name = SolverName::kFast;
   CouplingName coupling = CouplingName::kUnified;
@@ -109,8 +111,10 @@ struct SolverDescription {
   double cfl = kMostSecondOrderCells;  // cells that liquid or body may cross in one sub-step
 };
 
-// How surfaces meet: Coulomb friction and Newton's restitution, of pairs of bodies or materials; the walls of the tank are
-// a body and a material called "walls".
+// How surfaces meet: Coulomb friction and Newton's restitution, of pairs of bodies or materials; the walls of the tank
+// are called "walls" there.
+constexpr char kWallsName[] = "walls";
+
 struct ContactDescription {
   struct Pair {
     std::string a, b;            // names of bodies or materials

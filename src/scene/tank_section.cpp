@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 constexpr double kCellTolerance = 1e-6;  // of a cell
 constexpr int kLeastCells = 4;           // along an axis
-constexpr double kBytesPerCell = 2500.0;  // at the peak of a step, viscous: ./tank bench
+constexpr double kBytesPerCell = 1700.0;  // at the peak of a step, viscous, one body: ./tank bench
 
 char axisName(int axis) { return "xyz"[axis]; }
 
@@ -133,6 +133,7 @@ void readSolver(const YAML::Node& node, SolverDescription& solver, Violations& v
   if (solver.tolerance >= 1.0) map.fail("tolerance", "a relative residual below 1");
   map.read("maximum_iterations", solver.maximum_iterations, 1);
   map.read("threads", solver.threads, 0);
+  if (solver.threads > kMostThreads) map.fail("threads", "at most " + std::to_string(kMostThreads));
   map.read("cfl", solver.cfl, Range::kPositive);
 }
 

@@ -96,7 +96,7 @@ class BodyReader {
         inertial.ixy, inertial.iyy, inertial.iyz,              //
         inertial.ixz, inertial.iyz, inertial.izz;
     if (!std::isfinite(part.mass) || part.mass < 0.0) {
-      fail("link \"" + link.name + "\" inertial: mass " + std::to_string(part.mass) + " kg", "expected a mass > 0");
+      fail("link \"" + link.name + "\" inertial: mass " + std::to_string(part.mass) + " kg", "expected a mass >= 0");
     }
     parts_.push_back(transformed(part, X_BL * toEigen(inertial.origin)));
   }

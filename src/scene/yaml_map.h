@@ -14,7 +14,6 @@ class Violations {
   explicit Violations(std::string file) : file_(std::move(file)) {}
 
   void add(const YAML::Node& at, const std::string& text);
-  bool empty() const { return lines_.empty(); }
   std::size_t count() const { return lines_.size(); }
   // Throws SceneError with a line for each violation, if there is any.
   void throwIfAny() const;

@@ -5,8 +5,6 @@
 namespace monolith {
 namespace {
 
-constexpr char kWalls[] = "walls";
-
 struct Surface {
   std::string body, material;
 };
@@ -22,7 +20,7 @@ int fit(const std::string& name, const Surface& s) {
 ContactLaws::ContactLaws(const Scene& scene) : bodies_(scene.bodies.size()) {
   std::vector<Surface> surfaces;
   for (const BodyDescription& body : scene.bodies) surfaces.push_back({body.name, body.material});
-  surfaces.push_back({kWalls, ""});
+  surfaces.push_back({kWallsName, ""});
   for (const Surface& a : surfaces) {
     for (const Surface& b : surfaces) {
       ContactLaw law{scene.contact.friction, scene.contact.restitution};
@@ -49,10 +47,6 @@ std::vector<ContactLaw> ContactLaws::of(const std::vector<Contact>& contacts) co
   std::vector<ContactLaw> out;
   for (const Contact& c : contacts) out.push_back(of(c.body_a, c.body_b));
   return out;
-}
-
-bool ContactLaws::friction() const {
-  return std::any_of(table_.begin(), table_.end(), [](const ContactLaw& law) { return law.friction > 0.0; });
 }
 
 }  // namespace monolith

@@ -71,6 +71,7 @@ CoupledReport solveNonNewtonian(CoupledSystem& system, const ViscosityLaw& law, 
     total.status = solved.status;
     total.message = solved.message;
     total.residual = solved.residual;
+    total.contact_residual = solved.contact_residual;
     total.divergence = solved.divergence;
     if (solved.status != CoupledReport::Status::kConverged) return total;
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <stdexcept>
 
 #include "fluid/advection.h"
@@ -100,9 +101,10 @@ StepReport Simulation::step() {
   {
     const StageClock clock(step.times.total);
     bool good = true;
+    std::exception_ptr thrown;
     while (good && left > 1e-9 * m.scene.time_step) {
       // As many equal sub-steps as the present speeds ask for; looked at anew after each.
-      const double speed = std::max(m.bodySpeed(), step.substeps > 0 ? step.maximum_speed : m.report.maximum_speed);
+      const double speed = std::max(m.bodySpeed(), m.state.liquid_speed);
       const double wanted = std::ceil(left * speed / (m.scene.solver.cfl * m.grid.h) - 1e-9);
       const double count = std::clamp(wanted, 1.0, static_cast<double>(kLargestSubsteps));
       double dt = left / count;
@@ -111,10 +113,21 @@ StepReport Simulation::step() {
       }
       // A sub-step that fails leaves the state as it was; those before it have to be taken back. Where there are none,
       // the memory of a copy is given back.
-      if (step.substeps == 0) m.before = left - dt > 1e-9 * m.scene.time_step ? m.state : SimulationState();
-      good = m.substep(dt, step);
+      if (step.substeps == 0) {
+        if (left - dt > 1e-9 * m.scene.time_step) {
+          m.before = m.state;
+        } else {
+          m.before = SimulationState();
+        }
+      }
       ++step.substeps;
       left -= dt;
+      try {
+        good = m.substep(dt, step);
+      } catch (...) {
+        thrown = std::current_exception();
+        good = false;
+      }
     }
     if (good) {
       step.status = SolveStatus::kConverged;
@@ -126,6 +139,18 @@ StepReport Simulation::step() {
       m.state.mean_liquid = last_liquid;
       m.state.mean_contact = last_contact;
       m.prepareGeometry();
+      // Of the state, which is that of the last step.
+      step.liquid_volume = m.report.liquid_volume;
+      step.volume_correction = m.report.volume_correction;
+      step.kinetic_energy = m.report.kinetic_energy;
+      step.potential_energy = m.report.potential_energy;
+      step.liquid_momentum = m.report.liquid_momentum;
+      step.maximum_speed = m.report.maximum_speed;
+      step.model.liquid = m.hasLiquid();
+    }
+    if (thrown) {
+      omp_set_num_threads(threads_before);
+      std::rethrow_exception(thrown);
     }
   }
   step.step = m.state.step;
@@ -178,7 +203,7 @@ void Simulation::setBodyState(int body, const Eigen::Isometry3d& X_WB, const Eig
   moved.p_WBcm = X_WB.translation() + moved.q_WB * moved.p_BBcm;
   moved.twist.head<3>() = velocity + angular_velocity.cross(moved.p_WBcm - X_WB.translation());
   moved.twist.tail<3>() = angular_velocity;
-  const std::string overlaps = describeOverlaps(bodies, m.walls, kOverlapTolerance * m.grid.h);
+  const std::string overlaps = describeOverlaps(bodies, m.walls, kOverlapTolerance * m.grid.h, body);
   if (!overlaps.empty()) {
     throw std::invalid_argument("state of '" + name +
                                 "': expected a pose inside the tank and clear of other bodies:\n" + overlaps);

@@ -52,7 +52,7 @@ class Simulation {
   const std::vector<RigidBody>& bodies() const;
   // Acts on body i during the steps to come, until replaced. Throws std::invalid_argument unless finite.
   void setWrench(int body, const Wrench& wrench);
-  // Throws std::invalid_argument unless finite and inside the tank.
+  // Throws std::invalid_argument unless finite, inside the tank and clear of the other bodies.
   void setBodyState(int body, const Eigen::Isometry3d& X_WB, const Eigen::Vector3d& velocity,
                     const Eigen::Vector3d& angular_velocity);
 

@@ -297,15 +297,4 @@ KrylovReport Fgmres::solve(const KrylovMaps& maps, const std::vector<double>& b,
   return report;
 }
 
-std::size_t Fgmres::bytes() const {
-  std::size_t sum = work_.size() * sizeof(double);
-  for (const auto* vectors : {&single_.basis, &single_.directions}) {
-    for (const auto& v : *vectors) sum += v.size() * sizeof(float);
-  }
-  for (const auto* vectors : {&double_.basis, &double_.directions}) {
-    for (const auto& v : *vectors) sum += v.size() * sizeof(double);
-  }
-  return sum;
-}
-
 }  // namespace monolith

@@ -55,8 +55,6 @@ class Fgmres {
   // ... or lack only those of `length` entries from each of these on.
   void lose(const std::vector<std::ptrdiff_t>& begins, int length);
 
-  std::size_t bytes() const;
-
  private:
   template <class Real>
   struct Space {

@@ -331,14 +331,4 @@ float* PressureMultigrid::cycle(const float* b) {
   return levels_[0].x.data();
 }
 
-std::size_t PressureMultigrid::bytes() const {
-  std::size_t sum = inverse_.size() * sizeof(float);
-  for (const Level& level : levels_) {
-    sum += level.blocks.bytes() + level.extension.size() * sizeof(Extension);
-    for (const auto* field : {&level.mask, &level.x, &level.next, &level.b, &level.d})
-      sum += field->size() * sizeof(float);
-  }
-  return sum;
-}
-
 }  // namespace monolith

@@ -27,8 +27,6 @@ class PressureMultigrid {
   // place and is valid until the next call.
   float* cycle(const float* b);
 
-  std::size_t bytes() const;
-
  private:
   enum Kind : std::uint8_t { kOutside, kLiquid, kAir };
 

@@ -84,15 +84,4 @@ Faces<const float> VelocityMultigrid::cycle(const Faces<const float>& b) {
   return constView(levels_[0].x);
 }
 
-std::size_t VelocityMultigrid::bytes() const {
-  std::size_t sum = 0;
-  for (const Level& level : levels_) {
-    sum += level.own.bytes();
-    for (const auto* fields : {&level.own_transfer, &level.x, &level.next, &level.b, &level.d}) {
-      for (const auto& field : *fields) sum += field.size() * sizeof(float);
-    }
-  }
-  return sum;
-}
-
 }  // namespace monolith

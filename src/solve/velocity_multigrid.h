@@ -26,8 +26,6 @@ class VelocityMultigrid {
   // Approximate solution x of A x = b, zero where there is no unknown; valid until the next call.
   Faces<const float> cycle(const Faces<const float>& b);
 
-  std::size_t bytes() const;
-
  private:
   struct Level {
     Lattice lattice;

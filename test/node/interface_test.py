@@ -3,6 +3,7 @@
 
 import math
 import os
+import struct
 import sys
 import unittest
 
@@ -185,6 +186,9 @@ class InterfaceTest(unittest.TestCase):
                          ['x', 'y', 'z', 'normal_x', 'normal_y', 'normal_z', 'vx', 'vy', 'vz'])
         self.assertEqual(len(cloud.data), cloud.width * cloud.point_step)
         self.assertGreater(cloud.width, 40)
+        # A quarter of a cell for what the bodies displace.
+        heights = [struct.unpack_from('<f', cloud.data, i * cloud.point_step + 8)[0] for i in range(cloud.width)]
+        self.assertLess(max(abs(z - 0.08) for z in heights), 0.005)
 
     def testMarkersShowEveryBody(self):
         markers = Collector(NODE + '/markers', MarkerArray).waitFor()[-1].markers

@@ -71,7 +71,8 @@ TEST(NodeOptions, ValuesAreRead) {
 }
 
 TEST(NodeOptions, WrongValuesAreNamedWithWhatWasExpected) {
-  for (const char* rate : {"state_rate", "surface_rate", "statistics_rate", "marker_rate", "wrench_timeout"}) {
+  for (const char* rate :
+       {"state_rate", "surface_rate", "statistics_rate", "marker_rate", "wrench_timeout", "diagnostic_period"}) {
     expectError(rate, 0.0, "value 0: expected a finite number > 0");
     expectError(rate, -1, "value -1");
     expectError(rate, std::numeric_limits<double>::quiet_NaN(), "> 0");

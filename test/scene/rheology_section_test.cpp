@@ -98,5 +98,13 @@ TEST_F(RheologySection, ContradictsAConstantViscosity) {
   EXPECT_NE(error.find("dynamic_viscosity"), std::string::npos) << error;
 }
 
+// Without limits of its own a Bingham liquid has those of the law.
+TEST_F(RheologySection, ABinghamLiquidsLimitsAreHeldAgainstThoseOfTheLaw) {
+  const std::string law = "{law: herschel_bulkley, yield_stress: 2, consistency: 10, regularisation: 5, ";
+  expectError(law + "maximum_viscosity: 5}", {"maximum_viscosity", "at least consistency"});
+  expectError(law + "minimum_viscosity: 30}", {"minimum_viscosity", "at most consistency + regularisation"});
+  EXPECT_EQ(load(law + "maximum_viscosity: 15}").liquid.rheology.maximum_viscosity, 15.0);
+}
+
 }  // namespace
 }  // namespace monolith

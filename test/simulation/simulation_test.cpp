@@ -239,6 +239,53 @@ TEST(Simulation, AFailureInALaterSubstepTakesBackThoseBefore) {
   EXPECT_GT(failures, 0);
 }
 
+// The state is that of before, and so are its volume and energy in the report.
+TEST(Simulation, AFailedStepReportsTheStateThatItLeaves) {
+  Scene scene = tank(0.08, 1.0);
+  scene.bodies.push_back(sphereBody("ball", 0.02, 2000.0, {0.08, 0.08, 0.115}));
+  Simulation simulation(scene);
+  const StepReport good = simulation.step();
+  ASSERT_TRUE(good.committed());
+  Wrench absurd;
+  absurd.force[0] = 1e305;
+  simulation.setWrench(0, absurd);
+  const StepReport failed = simulation.step();
+  ASSERT_FALSE(failed.committed());
+  EXPECT_EQ(failed.liquid_volume, good.liquid_volume);
+  EXPECT_EQ(failed.potential_energy, good.potential_energy);
+  EXPECT_EQ(failed.maximum_speed, good.maximum_speed);
+  EXPECT_TRUE(failed.model.liquid);
+}
+
+TEST(Simulation, LiquidThatIsGivenASpeedIsSteppedAccordingly) {
+  Scene scene = tank(0.08, 1.0);
+  scene.solver.time_stepping = TimeStepping::kBackwardEuler;
+  Simulation simulation(scene);
+  const double speed = 4.0 * scene.solver.cfl * scene.tank.cell_width / scene.time_step;
+  simulation.setLiquidVelocity([&](const Eigen::Vector3d&) { return Eigen::Vector3d(0.0, 0.0, speed); });
+  EXPECT_GE(simulation.step().substeps, 2);
+}
+
+// What a body that reaches through a wall by right does, is no reason to refuse another's pose.
+TEST(Simulation, ABodysStateIsJudgedByItsOwnOverlapsAlone) {
+  Scene scene = tank(0.08, 1.0);
+  scene.bodies.push_back(sphereBody("ball", 0.02, 2000.0, {0.05, 0.05, 0.05}));
+  BodyDescription paddle = boxBody("paddle", {0.04, 0.04, 0.04}, 1000.0, {0.13, 0.08, 0.1});
+  paddle.motion = BodyMotion::kPrescribed;
+  paddle.prescribed.twist[0] = 0.5;
+  scene.bodies.push_back(paddle);
+  Simulation simulation(scene);
+  for (int i = 0; i < 40 && simulation.bodyStates()[1].X_WB.translation()[0] < 0.15; ++i) {
+    ASSERT_TRUE(simulation.step().committed());
+  }
+  ASSERT_GT(simulation.bodyStates()[1].X_WB.translation()[0], 0.145);
+  const Eigen::Isometry3d free(Eigen::Translation3d(0.05, 0.06, 0.05)), inside(Eigen::Translation3d(0.13, 0.08, 0.1));
+  simulation.setBodyState(0, free, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
+  EXPECT_EQ(simulation.bodyStates()[0].X_WB.translation(), free.translation());
+  EXPECT_THROW(simulation.setBodyState(0, inside, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()),
+               std::invalid_argument);
+}
+
 TEST(Simulation, APistonOnSealedLiquidIsRefusedByName) {
   Scene scene = tank(0.16, 1.0);
   BodyDescription piston = boxBody("piston", {0.16, 0.16, 0.03}, 1000.0, {0.08, 0.08, 0.08});
