@@ -9,11 +9,11 @@
 namespace monolith {
 namespace {
 
-// Up to here the projection takes fewer iterations.
-constexpr double kLargestProjected = 20.0;
+// Viscous number from which on viscosity holds back more than what is within a cell of solids.
+constexpr double kLeastHolding = 1.0;
 // Beyond, more smoothing pays: fewer vectors to orthogonalise.
 constexpr int kSmootherDegree = 2;
-constexpr int kViscousSmootherDegree = 4;
+constexpr int kViscousSmootherDegree = 3;
 
 void addTo(float* field, std::ptrdiff_t size, float constant) {
 #pragma omp simd
@@ -32,13 +32,9 @@ float removeMean(const PressureRegion& region, float* field) {
 
 }  // namespace
 
-bool LiquidPreconditioner::projects() const {
-  return problem_->viscous_number <= kLargestProjected;
-}
-
 void LiquidPreconditioner::set(const StepProblem& problem, const FaceBlocks<float>& faces,
                                const CellBlocks<float>& cells, const FaceField<float>& transfer,
-                               const FaceField<float>& conductance) {
+                               const FaceField<float>& impulse) {
   problem_ = &problem;
   faces_ = &faces;
   cells_ = &cells;
@@ -52,11 +48,21 @@ void LiquidPreconditioner::set(const StepProblem& problem, const FaceBlocks<floa
     ++levels;
     number *= 0.25;
   }
+  const bool holding = problem.viscous_number > kLeastHolding && levels > 1;
   if (problem.coefficients.viscous) {
     velocity_.set(l, faces, transfer, problem.coarse.levels, levels, problem.coarse.generation(),
-                  projects() ? kSmootherDegree : kViscousSmootherDegree);
+                  holding ? kViscousSmootherDegree : kSmootherDegree);
   }
-  pressure_.set(l, problem.coefficients.has_pressure, conductance, &problem.steady);
+  if (holding) {
+    permeability_.set(problem, velocity_, impulse);
+    impulse_ = &permeability_.impulse();
+    pressure_.set(l, problem.coefficients.has_pressure, problem.coefficients.open, *impulse_,
+                  permeability_.lasted() ? &problem.steady : nullptr, &permeability_.boundary());
+  } else {
+    permeability_.forget();
+    impulse_ = &impulse;
+    pressure_.set(l, problem.coefficients.has_pressure, problem.coefficients.open, impulse, &problem.steady);
+  }
   cells.clear(0, build_, g_);
   build_ = cells.build();
   if (!problem.coefficients.viscous || weight_.size() != l.size) assignZero(l.size, weight_);
@@ -103,12 +109,7 @@ void LiquidPreconditioner::apply(const float* r, float flux_scale, float* x) {
     ++sealed;
   }
   if (sealed > 0) fillHalo(l, phi);
-  if (projects()) {
-    project(l, *faces_, u, phi, out);
-  } else {
-    countWork(3 * l.size, 0.0, 2.0 * sizeof(float));
-    for (int a = 0; a < 3; ++a) std::copy_n(u[a], size, out[a]);
-  }
+  project(l, *impulse_, u, phi, out);
   float* p = x + 3 * size;
   const float *g = g_.data(), *weight = weight_.data();
   countWork(l.size, 2.0, 4.0 * sizeof(float));

@@ -3,16 +3,17 @@
 //
 //   u* = A^-1 r_u                        one multigrid cycle
 //   g = -r_p - C u*
-//   p = L^-1 g + w g                     one multigrid cycle on L = C mass^-1 C^T; Cahouet & Chabard (1988)
-//   u = u* + mass^-1 C^T L^-1 g          where inertia counts: the projection method (Griffith 2009; Cai et al. 2014)
-//   u = u*                               where viscosity rules: block triangular
+//   p = L^-1 g + w g                     one multigrid cycle on L = C K C^T; Cahouet & Chabard (1988)
+//   u = u* + K C^T L^-1 g                the projection method (Griffith 2009; Cai et al. 2014)
 //
 // w = 2 N times the part of the cell's normal stress that is in the liquid: next to a free surface the Schur complement
-// is as much softer. The projection is exact without viscosity; with much of it, it leaves strong stresses at
-// boundaries, and its iterations grow with N, while those of the triangular form do not.
+// is as much softer. K is the impulse of a face, 1/mass without viscosity, when all this is exact. With much of it the
+// permeability (permeability.h) is what makes the iterations independent of N; the waves that are left to L are long
+// then, and its finest level is smoothed at boundaries alone.
 
 #include <vector>
 
+#include "coupling/permeability.h"
 #include "coupling/pressure_regions.h"
 #include "coupling/step_problem.h"
 #include "solve/pressure_multigrid.h"
@@ -25,20 +26,20 @@ class LiquidPreconditioner {
   // The problem and the compressed operator, with the fields that its construction gives besides, must outlive the
   // preconditioner.
   void set(const StepProblem& problem, const FaceBlocks<float>& faces, const CellBlocks<float>& cells,
-           const FaceField<float>& transfer, const FaceField<float>& conductance);
+           const FaceField<float>& transfer, const FaceField<float>& impulse);
 
   // x ~ the solution for right side r, its flux times flux_scale: U by components, then p^, lattice.size each. Halos of
   // x are filled, those of r not read.
   void apply(const float* r, float flux_scale, float* x);
 
  private:
-  bool projects() const;
-
   const StepProblem* problem_ = nullptr;
   const FaceBlocks<float>* faces_ = nullptr;
   const CellBlocks<float>* cells_ = nullptr;
   VelocityMultigrid velocity_;
   PressureMultigrid pressure_;
+  Permeability permeability_;
+  const FaceField<float>* impulse_ = nullptr;  // K
   std::vector<float> g_, weight_;
   long build_ = -1;  // of the cells' blocks, that g_ has followed
 };

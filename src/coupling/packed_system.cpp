@@ -33,7 +33,7 @@ void PackedSystem::set(StepProblem& problem) {
   problem_ = &problem;
   const StepProblem& p = problem;
   const long last_faces = faces_.build(), last_cells = cells_.build();
-  buildFaceBlocks(p.coefficients, faces_, &transfer_, &conductance_, &p.steady);
+  buildFaceBlocks(p.coefficients, faces_, &transfer_, &impulse_, &p.steady);
   buildCellBlocks(p.coefficients, cells_, &p.steady);
   if (faces_.follows(last_faces) && cells_.follows(last_cells)) {
     std::vector<std::ptrdiff_t> lost;
@@ -47,7 +47,7 @@ void PackedSystem::set(StepProblem& problem) {
   faces_single_ = faces_.converted<float>();
   cells_single_ = cells_.converted<float>();
   flux_weight_ = std::max(1.0, 2.0 * p.viscous_number);
-  preconditioner_.set(p, faces_single_, cells_single_, transfer_, conductance_);
+  preconditioner_.set(p, faces_single_, cells_single_, transfer_, impulse_);
   scale_.resize(bodySize());
   for (std::size_t i = 0; i < p.free.size(); ++i) scale_.segment<6>(6 * i) = p.twist_scale[i];
   columns_.set(p, scale_);

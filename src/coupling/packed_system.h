@@ -75,7 +75,7 @@ class PackedSystem {
   CellBlocks<float> cells_single_;
   BodyColumns<double> columns_;
   BodyColumns<float> columns_single_;
-  FaceField<float> transfer_, conductance_;  // of the finest level, see buildFaceBlocks()
+  FaceField<float> transfer_, impulse_;  // of the finest level, see buildFaceBlocks()
   LiquidPreconditioner preconditioner_;
   Fgmres krylov_;
   double flux_weight_ = 1.0;

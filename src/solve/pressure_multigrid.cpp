@@ -27,7 +27,8 @@ float liftedToAir(float g, bool inside) {
 }  // namespace
 
 void PressureMultigrid::set(const Lattice& l, const std::vector<std::uint8_t>& has_pressure,
-                            const FaceField<float>& conductance, const SteadyRows* steady) {
+                            const FaceField<double>& open, const FaceField<float>& impulse, const SteadyRows* steady,
+                            const std::vector<std::uint8_t>* smoothed) {
   std::size_t count = 1;
   for (Lattice c = l; canCoarsen(c); c = coarsened(c)) ++count;
   levels_.resize(count);
@@ -47,6 +48,7 @@ void PressureMultigrid::set(const Lattice& l, const std::vector<std::uint8_t>& h
     for (auto c = row; c < row + width; ++c) network.kind[c] = has_pressure[c] ? kLiquid : kOutside;
   });
   fillHalo(l, network.kind);
+  const auto conductance = [&](int a, std::ptrdiff_t f) { return static_cast<float>(open[a][f]) * impulse[a][f]; };
   const auto pressed = [&](std::ptrdiff_t c) { return network.kind[c] == kLiquid; };
   forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
     if (keepsRow(j, k)) return;
@@ -54,7 +56,7 @@ void PressureMultigrid::set(const Lattice& l, const std::vector<std::uint8_t>& h
       float to_air = 0.0f;
       for (int a = 0; a < 3; ++a) {
         const auto sa = l.stride[a];
-        const float low = conductance[a][c], high = conductance[a][c + sa];
+        const float low = conductance(a, c), high = conductance(a, c + sa);
         network.conductance[a][c] = pressed(c - sa) && pressed(c) ? low : 0.0f;
         if (pressed(c)) {
           if (!pressed(c - sa)) to_air += low;
@@ -68,7 +70,7 @@ void PressureMultigrid::set(const Lattice& l, const std::vector<std::uint8_t>& h
     if (keepsRow(j, k)) return;
     for (auto c = row; c < row + width; ++c) {
       bool flows = false;
-      for (int a = 0; a < 3; ++a) flows = flows || conductance[a][c] > 0.0f || conductance[a][c + l.stride[a]] > 0.0f;
+      for (int a = 0; a < 3; ++a) flows = flows || conductance(a, c) > 0.0f || conductance(a, c + l.stride[a]) > 0.0f;
       if (!pressed(c) && flows) network.kind[c] = kAir;
       network.beyond[c] = network.kind[c] == kAir;
     }
@@ -77,13 +79,13 @@ void PressureMultigrid::set(const Lattice& l, const std::vector<std::uint8_t>& h
   fillHalo(l, network.kind);
   fillHalo(l, network.beyond);
   levels_[0].lattice = l;
-  finish(network, steady, levels_[0]);
+  finish(network, steady, smoothed, levels_[0]);
   Network last;
   for (std::size_t index = 1; index < count; ++index) {
     Network coarse;
     levels_[index].lattice = coarsened(levels_[index - 1].lattice);
     coarsen(levels_[index - 1].lattice, index == 1 ? network : last, levels_[index].lattice, coarse);
-    finish(coarse, nullptr, levels_[index]);
+    finish(coarse, nullptr, nullptr, levels_[index]);
     findExtension(coarse, levels_[index]);
     last = std::move(coarse);
   }
@@ -137,8 +139,10 @@ void PressureMultigrid::coarsen(const Lattice& from, const Network& fine, const 
   });
 }
 
-void PressureMultigrid::finish(const Network& network, const SteadyRows* steady, Level& level) const {
+void PressureMultigrid::finish(const Network& network, const SteadyRows* steady,
+                               const std::vector<std::uint8_t>* smoothed, Level& level) const {
   const Lattice& l = level.lattice;
+  level.partial = smoothed != nullptr;
   if (!level.blocks.wouldKeep(steady) || level.mask.size() != l.size) assignZero(l.size, level.mask);
   if (&level != &levels_[0]) assignZero(l.size, level.b);
   level.blocks.build(l, {0}, [&](int, std::ptrdiff_t row, int width, auto& k) {
@@ -156,6 +160,16 @@ void PressureMultigrid::finish(const Network& network, const SteadyRows* steady,
         sum += k[kHigh + a][i] = liquid ? network.conductance[a][c + l.stride[a]] : 0.0f;
       }
       level.mask[c] = k[kInverse][i] = sum > 0.0f ? 1.0f / sum : 0.0f;
+    }
+    if (smoothed == nullptr) return true;
+    // Next to smoothed cells the residual is wanted, but nothing is smoothed.
+    const auto sy = l.stride[1], sz = l.stride[2];
+    for (int i = 0; i < width; ++i) {
+      const std::uint8_t* at = smoothed->data() + row + i;
+      if (*at) continue;
+      k[kInverse][i] = 0.0f;
+      if (at[-1] || at[1] || at[-sy] || at[sy] || at[-sz] || at[sz]) continue;
+      for (int q = kToAir; q < kInverse; ++q) k[q][i] = 0.0f;
     }
     return true;
   }, steady);
@@ -250,12 +264,20 @@ inline void network(const Lattice& l, const float* k, const float* x, float* out
 // Streams x, b and r: 12 bytes a cell for 20 flops.
 void PressureMultigrid::residual(Level& level, float* r) const {
   countWork(level.blocks.lanes(), kNetworkFlops + 1.0, 3.0 * sizeof(float));
-  const float *x = level.x.data(), *b = level.right;
+  const float *x = level.x.data(), *b = level.right, *mask = level.mask.data();
+  if (level.partial) {
+    // Away from its blocks x is zero.
+    const auto size = static_cast<std::ptrdiff_t>(level.lattice.size);
+    countWork(level.lattice.size, 0.0, 3.0 * sizeof(float));
+#pragma omp parallel for simd schedule(static)
+    for (std::ptrdiff_t i = 0; i < size; ++i) r[i] = mask[i] > 0.0f ? b[i] : 0.0f;
+  }
   level.blocks.forEach([&](int, std::ptrdiff_t c, const float* k) {
+    const float* has = level.partial ? mask + c : k + kInverse * kLanes;
     float Lx[kLanes];
     network(level.lattice, k, x + c, Lx);
 #pragma omp simd
-    for (int i = 0; i < kLanes; ++i) r[c + i] = k[kInverse * kLanes + i] > 0.0f ? b[c + i] - Lx[i] : 0.0f;
+    for (int i = 0; i < kLanes; ++i) r[c + i] = has[i] > 0.0f ? b[c + i] - Lx[i] : 0.0f;
   });
 }
 
@@ -288,7 +310,14 @@ void PressureMultigrid::smooth(Level& level, int degree, bool from_zero) const {
           next[c + i] = x[c + i] + d[c + i];
         }
       });
-      level.x.swap(level.next);
+      if (level.partial) {
+        // What is not in a block is in x alone.
+        float* to = level.x.data();
+        countWork(level.blocks.lanes(), 0.0, 2.0 * sizeof(float));
+        level.blocks.forEach([&](int, std::ptrdiff_t c, const float*) { std::copy_n(next + c, kLanes, to + c); });
+      } else {
+        level.x.swap(level.next);
+      }
     }
     fillHalo(level.lattice, level.x);
   }
@@ -310,6 +339,7 @@ void PressureMultigrid::descend(std::size_t index) {
     fillHalo(level.lattice, level.x);
     return;
   }
+  if (level.partial) assignZero(level.x.size(), level.x);
   smooth(level, kSmootherDegree, true);
   residual(level, level.next.data());
   Level& coarse = levels_[index + 1];

@@ -6,6 +6,9 @@
 // pressure is zero. A coarse face takes the mean of the four fine ones that it consists of (aggregation, Braess 1995,
 // with the factor that makes it consistent), so cut cells, thin gaps and the free surface coarsen without geometry; the
 // conductance to the air follows the surface's distance to the centre of the coarse cell.
+//
+// Where viscosity rules, the answer for waves as short as a few cells doesn't matter away from boundaries: there the
+// finest level may be left to the coarser ones.
 
 #include <Eigen/Dense>
 #include <vector>
@@ -18,10 +21,12 @@ namespace monolith {
 
 class PressureMultigrid {
  public:
-  // The network of the finest level, its halo filled: the coarser ones follow from it. steady: rows in which nothing has
-  // changed since the last call.
-  void set(const Lattice& lattice, const std::vector<std::uint8_t>& has_pressure, const FaceField<float>& conductance,
-           const SteadyRows* steady = nullptr);
+  // The network of the finest level: conductance open * impulse at each face, halos filled. The coarser ones follow
+  // from it. steady: rows in which nothing has changed since the last call. smoothed: cells that are smoothed on the
+  // finest level, the others only take what the coarser ones have found; null: all.
+  void set(const Lattice& lattice, const std::vector<std::uint8_t>& has_pressure, const FaceField<double>& open,
+           const FaceField<float>& impulse, const SteadyRows* steady = nullptr,
+           const std::vector<std::uint8_t>* smoothed = nullptr);
 
   // Approximate solution x of L x = b, zero outside of cells with pressure; its halo is filled. It may be changed in
   // place and is valid until the next call.
@@ -46,6 +51,7 @@ class PressureMultigrid {
     const float* right = nullptr;
     ChebyshevRange range;
     long build = -1;  // of the blocks, that the fields have followed
+    bool partial = false;  // blocks are where it is smoothed and next to that
   };
   // What coarsening needs of a level.
   struct Network {
@@ -56,7 +62,8 @@ class PressureMultigrid {
   };
 
   void coarsen(const Lattice& from, const Network& fine, const Lattice& l, Network& coarse) const;
-  void finish(const Network& network, const SteadyRows* steady, Level& level) const;
+  void finish(const Network& network, const SteadyRows* steady, const std::vector<std::uint8_t>* smoothed,
+              Level& level) const;
   void findExtension(const Network& network, Level& level) const;
   void invert(const Network& network, const Level& level);
   void residual(Level& level, float* r) const;

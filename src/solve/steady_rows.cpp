@@ -5,8 +5,9 @@
 namespace monolith {
 namespace {
 
-// How far a row's coefficients look: what is built from coefficients that are built from cells and faces around.
-constexpr int kReach = 3;
+// How far a row's coefficients look: what is built from what is built from coefficients that are built from cells and
+// faces around.
+constexpr int kReach = 4;
 
 }  // namespace
 

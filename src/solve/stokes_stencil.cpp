@@ -49,17 +49,17 @@ bool isZero(const Value* values, int size) {
   return std::all_of(values, values + size, [](Value value) { return value == Value(0); });
 }
 
-// Coefficients of a row of faces.
+// Coefficients of a row of faces, and the impulse if it is wanted.
 template <class Real, class From>
 void fillFaceRow(const StaggeredCoefficients<From>& c, int a, std::ptrdiff_t row, int width,
-                 typename FaceBlocks<Real>::Row& out) {
+                 typename FaceBlocks<Real>::Row& out, float* impulse) {
   const Lattice& l = c.lattice;
   const auto sa = l.stride[a];
   const From* m = c.mass[a].data() + row;
   const From* open = c.open[a].data() + row;
   std::array<Real*, S::kCount> k;
   for (int q = 0; q < S::kCount; ++q) k[q] = out[q].data();
-  // Until the end, kInverse holds the diagonal, kTransfer the ties, kImpulse the sum of what is off the diagonal.
+  // Until the end, kInverse holds the diagonal, kTransfer the ties, kOpen the sum of what is off the diagonal.
   if (!c.viscous) {
 #pragma omp simd
     for (int i = 0; i < width; ++i) {
@@ -80,7 +80,7 @@ void fillFaceRow(const StaggeredCoefficients<From>& c, int a, std::ptrdiff_t row
       k[S::kNormalHigh][i] = high;
       k[S::kInverse][i] = tie + low + high;
       k[S::kTransfer][i] = tie + (has_low ? Real(0) : low) + (has_high ? Real(0) : high);
-      k[S::kImpulse][i] = (has_low ? low : Real(0)) + (has_high ? high : Real(0));
+      k[S::kOpen][i] = (has_low ? low : Real(0)) + (has_high ? high : Real(0));
     }
     for (int o = 0; o < 2; ++o) {
       const int b = kOthers[a].axis[o], place = kOthers[a].place[o];
@@ -101,15 +101,15 @@ void fillFaceRow(const StaggeredCoefficients<From>& c, int a, std::ptrdiff_t row
         x_high[i] = cross_high;
         k[S::kInverse][i] += low + high;
         k[S::kTransfer][i] += (has_low ? Real(0) : low) + (has_high ? Real(0) : high);
-        k[S::kImpulse][i] += (has_low ? low : Real(0)) + (has_high ? high : Real(0)) +
-                             (mb[i] > From(0) ? cross_low : Real(0)) + (mb[i - sa] > From(0) ? cross_low : Real(0)) +
-                             (mb[i + sb] > From(0) ? cross_high : Real(0)) +
-                             (mb[i + sb - sa] > From(0) ? cross_high : Real(0));
+        k[S::kOpen][i] += (has_low ? low : Real(0)) + (has_high ? high : Real(0)) +
+                          (mb[i] > From(0) ? cross_low : Real(0)) + (mb[i - sa] > From(0) ? cross_low : Real(0)) +
+                          (mb[i + sb] > From(0) ? cross_high : Real(0)) +
+                          (mb[i + sb - sa] > From(0) ? cross_high : Real(0));
       }
     }
 #pragma omp simd
     for (int i = 0; i < width; ++i) {
-      k[S::kInverse][i] = std::max(k[S::kInverse][i], (k[S::kInverse][i] + k[S::kImpulse][i]) / Real(kLargestScaled));
+      k[S::kInverse][i] = std::max(k[S::kInverse][i], (k[S::kInverse][i] + k[S::kOpen][i]) / Real(kLargestScaled));
     }
   }
 #pragma omp simd
@@ -120,7 +120,7 @@ void fillFaceRow(const StaggeredCoefficients<From>& c, int a, std::ptrdiff_t row
     k[S::kInverse][i] = Real(1) / diagonal;
     k[S::kTransfer][i] = std::max(Real(0), Real(1) - (effective - Real(m[i])) / diagonal);
     k[S::kOpen][i] = open[i];
-    k[S::kImpulse][i] = Real(open[i]) / effective;
+    if (impulse != nullptr) impulse[i] = has ? static_cast<float>(Real(open[i]) / effective) : 0.0f;
   }
   for (int i = 0; i < width; ++i) {
     if (m[i] > From(0)) continue;
@@ -132,10 +132,10 @@ void fillFaceRow(const StaggeredCoefficients<From>& c, int a, std::ptrdiff_t row
 
 template <class Real, class From>
 void buildFaceBlocks(const StaggeredCoefficients<From>& c, FaceBlocks<Real>& out, FaceField<float>* transfer,
-                     FaceField<float>* conductance, const SteadyRows* steady) {
+                     FaceField<float>* impulse, const SteadyRows* steady) {
   const Lattice& l = c.lattice;
   const bool keeps = out.wouldKeep(steady);
-  for (auto* fields : {transfer, conductance}) {
+  for (auto* fields : {transfer, impulse}) {
     if (fields == nullptr) continue;
     for (auto& field : *fields) {
       if (!keeps || field.size() != l.size) assignZero(l.size, field);
@@ -145,19 +145,16 @@ void buildFaceBlocks(const StaggeredCoefficients<From>& c, FaceBlocks<Real>& out
   const std::vector<int> first = {l.periodic[0] ? 0 : 1, 0, 0};
   out.build(l, first, [&](int a, std::ptrdiff_t row, int width, typename FaceBlocks<Real>::Row& k) {
     if (isZero(c.mass[a].data() + row, width)) {
-      for (auto* fields : {transfer, conductance}) {
+      for (auto* fields : {transfer, impulse}) {
         if (fields != nullptr) std::fill_n((*fields)[a].data() + row, width, 0.0f);
       }
       return false;
     }
-    fillFaceRow<Real>(c, a, row, width, k);
+    fillFaceRow<Real>(c, a, row, width, k, impulse == nullptr ? nullptr : (*impulse)[a].data() + row);
     if (transfer != nullptr) std::copy_n(k[S::kTransfer].data(), width, (*transfer)[a].data() + row);
-    if (conductance == nullptr) return true;
-    float* g = (*conductance)[a].data() + row;
-    for (int i = 0; i < width; ++i) g[i] = static_cast<float>(k[S::kOpen][i] * k[S::kImpulse][i]);
     return true;
   }, steady);
-  for (auto* fields : {transfer, conductance}) {
+  for (auto* fields : {transfer, impulse}) {
     if (fields == nullptr) continue;
     for (auto& field : *fields) fillHalo(l, field);
   }
@@ -273,17 +270,18 @@ void transferredResidual(const Lattice& l, const FaceBlocks<float>& blocks, cons
   });
 }
 
-// 28 bytes a cell; bound by memory.
-void project(const Lattice& l, const FaceBlocks<float>& blocks, const Faces<const float>& x, const float* p,
+// 40 bytes a cell for 9 flops: bound by memory.
+void project(const Lattice& l, const FaceField<float>& impulse, const Faces<const float>& x, const float* p,
              const Faces<float>& y) {
-  countWork(blocks.lanes(), 3.0, sizeof(float) * (2.0 + 1.0 / 3.0));
-  blocks.forEach([&](int a, std::ptrdiff_t f, const float* k) {
+  const auto size = static_cast<std::ptrdiff_t>(l.size);
+  countWork(3 * l.size, 3.0, sizeof(float) * (3.0 + 1.0 / 3.0));
+  for (int a = 0; a < 3; ++a) {
     const auto sa = l.stride[a];
-#pragma omp simd
-    for (int i = 0; i < kLanes; ++i) {
-      y[a][f + i] = x[a][f + i] + k[S::kImpulse * kLanes + i] * (p[f + i - sa] - p[f + i]);
-    }
-  });
+    const float *g = impulse[a].data(), *from = x[a];
+    float* to = y[a];
+#pragma omp parallel for simd schedule(static)
+    for (std::ptrdiff_t f = sa; f < size; ++f) to[f] = from[f] + g[f] * (p[f - sa] - p[f]);
+  }
 }
 
 #define MONOLITH_INSTANTIATE(Real, From)                                                                  \

@@ -30,7 +30,6 @@ struct FaceStencil {
     kInverse = 11,  // 1 over the smoothing diagonal
     kTransfer,      // share of a correction that comes from the coarser level: 1 - tie to solids/diagonal
     kOpen,
-    kImpulse,  // open over effective mass
     kCount
   };
 };
@@ -48,11 +47,12 @@ using CellBlocks = StencilBlocks<Real, CellStencil::kCount>;
 template <class Real>
 using Faces = std::array<Real*, 3>;
 
-// Compresses a level. transfer and conductance (open^2/effective mass) are those per face, as fields; either may be
-// null. Of steady rows what is there is kept.
+// Compresses a level. transfer and impulse (open/effective mass: what a difference of pressure gives a face while
+// viscosity holds its neighbours) are those per face, as fields; either may be null. Of steady rows what is there is
+// kept.
 template <class Real, class From>
 void buildFaceBlocks(const StaggeredCoefficients<From>& c, FaceBlocks<Real>& out, FaceField<float>* transfer,
-                     FaceField<float>* conductance, const SteadyRows* steady = nullptr);
+                     FaceField<float>* impulse, const SteadyRows* steady = nullptr);
 template <class Real, class From>
 void buildCellBlocks(const StaggeredCoefficients<From>& c, CellBlocks<Real>& out, const SteadyRows* steady = nullptr);
 
@@ -78,8 +78,8 @@ void chebyshevStart(const FaceBlocks<float>& blocks, const Faces<const float>& b
 // r = transfer (b - A x)
 void transferredResidual(const Lattice& l, const FaceBlocks<float>& blocks, const Faces<const float>& x,
                          const Faces<const float>& b, const Faces<float>& r);
-// y = x + C^T p/effective mass
-void project(const Lattice& l, const FaceBlocks<float>& blocks, const Faces<const float>& x, const float* p,
+// y = x + impulse times the difference of p, on all faces: y is x where the impulse is zero. Halos are not filled.
+void project(const Lattice& l, const FaceField<float>& impulse, const Faces<const float>& x, const float* p,
              const Faces<float>& y);
 
 }  // namespace monolith

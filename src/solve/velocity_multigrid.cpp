@@ -78,6 +78,12 @@ void VelocityMultigrid::descend(std::size_t index) {
   smooth(level, degree_, false);
 }
 
+const FaceField<float>& VelocityMultigrid::coarseCycle(const FaceField<float>& b) {
+  levels_[1].right = {b[0].data(), b[1].data(), b[2].data()};
+  descend(1);
+  return levels_[1].x;
+}
+
 Faces<const float> VelocityMultigrid::cycle(const Faces<const float>& b) {
   levels_[0].right = b;
   descend(0);

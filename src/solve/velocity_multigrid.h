@@ -25,6 +25,8 @@ class VelocityMultigrid {
            int smoother_degree);
   // Approximate solution x of A x = b, zero where there is no unknown; valid until the next call.
   Faces<const float> cycle(const Faces<const float>& b);
+  // The same from the level below the finest on, of which there must be one; the halo is filled.
+  const FaceField<float>& coarseCycle(const FaceField<float>& b);
 
  private:
   struct Level {

@@ -1,0 +1,65 @@
+#include "coupling/permeability.h"
+
+#include <algorithm>
+
+#include "solve/staggered_transfer.h"
+#include "solve/whole_fields.h"
+
+namespace monolith {
+namespace {
+
+// Next to solids w goes to zero, and on cells twice as wide a narrow gap may have none: so much times 1/N it has at
+// least.
+constexpr double kLeast = 0.1;
+// A face that conducts as much as one in the open, about.
+constexpr float kLeastOpen = 0.7f, kMostOpen = 1.5f;
+
+double largestNumber(const StepProblem& problem) {
+  const auto& viscosity = problem.cell_viscosity;
+  return problem.viscous_number * (viscosity.empty() ? 1.0 : *std::max_element(viscosity.begin(), viscosity.end()));
+}
+
+}  // namespace
+
+void Permeability::set(const StepProblem& problem, VelocityMultigrid& velocity, const FaceField<float>& free) {
+  const Lattice& l = problem.grid.lattice;
+  const StaggeredCoefficients<float>& level = problem.coarse.levels[1];
+  lasted_ = generation_ == problem.coarse.generation();
+  generation_ = problem.coarse.generation();
+  if (!lasted_) {
+    coarse_ = velocity.coarseCycle(level.mass);
+    const float least = static_cast<float>(std::min(1.0, kLeast / largestNumber(problem)));
+    for (auto& field : coarse_) {
+      for (float& w : field) w = std::max(w, least);
+    }
+  }
+  share_.resize(l.size);
+  for (int a = 0; a < 3; ++a) {
+    const auto &mass = problem.coefficients.mass[a], &open = problem.coefficients.open[a];
+    assignZero(l.size, impulse_[a]);
+#pragma omp parallel for simd schedule(static)
+    for (std::size_t f = 0; f < l.size; ++f) share_[f] = mass[f] > 0.0 ? static_cast<float>(open[f] / mass[f]) : 0.0f;
+    prolongateFaces(level.lattice, a, coarse_[a].data(), l, share_.data(), impulse_[a].data());
+#pragma omp parallel for simd schedule(static)
+    for (std::size_t f = 0; f < l.size; ++f) impulse_[a][f] = std::min(free[a][f], impulse_[a][f]);
+    fillHalo(l, impulse_[a]);
+  }
+  boundary_.resize(l.size);
+  forEachRow(l, [&](std::ptrdiff_t row, int, int) {
+    std::uint8_t* out = boundary_.data() + row;
+    std::fill_n(out, l.faceEnd(0), std::uint8_t{0});
+    for (int a = 0; a < 3; ++a) {
+      for (const auto at : {row, row + l.stride[a]}) {
+        const float* impulse = free[a].data() + at;
+        const double* open = problem.coefficients.open[a].data() + at;
+        for (int i = 0; i < l.n[0]; ++i) {
+          const float conductance = static_cast<float>(open[i]) * impulse[i];
+          out[i] |= !(conductance > kLeastOpen && conductance < kMostOpen);
+        }
+      }
+    }
+  });
+  fillHalo(l, boundary_);
+}
+
+}  // namespace monolith
