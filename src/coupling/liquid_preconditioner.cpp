@@ -9,9 +9,7 @@
 namespace monolith {
 namespace {
 
-// Viscous number from which on viscosity holds back more than what is within a cell of solids.
-constexpr double kLeastHolding = 1.0;
-// Beyond, more smoothing pays: fewer vectors to orthogonalise.
+// Where viscosity holds the liquid back, more smoothing pays: fewer vectors to orthogonalise.
 constexpr int kSmootherDegree = 2;
 constexpr int kViscousSmootherDegree = 3;
 
@@ -39,25 +37,26 @@ void LiquidPreconditioner::set(const StepProblem& problem, const FaceBlocks<floa
   faces_ = &faces;
   cells_ = &cells;
   const Lattice& l = problem.grid.lattice;
-  double number = problem.viscous_number;
+  double largest = problem.viscous_number;
   if (!problem.cell_viscosity.empty()) {
-    number *= *std::max_element(problem.cell_viscosity.begin(), problem.cell_viscosity.end());
+    largest *= *std::max_element(problem.cell_viscosity.begin(), problem.cell_viscosity.end());
   }
   std::size_t levels = 1;
+  double number = largest;
   while (levels < problem.coarse.levels.size() && number > kLeastCoarsenedNumber) {
     ++levels;
     number *= 0.25;
   }
-  const bool holding = problem.viscous_number > kLeastHolding && levels > 1;
+  const bool holding = largest > kLeastHolding && levels > 1;
   if (problem.coefficients.viscous) {
     velocity_.set(l, faces, transfer, problem.coarse.levels, levels, problem.coarse.generation(),
                   holding ? kViscousSmootherDegree : kSmootherDegree);
   }
   if (holding) {
-    permeability_.set(problem, velocity_, impulse);
+    permeability_.set(problem, largest, velocity_, impulse);
     impulse_ = &permeability_.impulse();
     pressure_.set(l, problem.coefficients.has_pressure, problem.coefficients.open, *impulse_,
-                  permeability_.lasted() ? &problem.steady : nullptr, &permeability_.boundary());
+                  permeability_.lasted() ? &problem.steady : nullptr, &permeability_.sharp());
   } else {
     permeability_.forget();
     impulse_ = &impulse;

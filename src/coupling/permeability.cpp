@@ -8,29 +8,25 @@
 namespace monolith {
 namespace {
 
-// Next to solids w goes to zero, and on cells twice as wide a narrow gap may have none: so much times 1/N it has at
+// Next to solids k goes to zero, and on cells twice as wide a narrow gap may have none: so much times 1/N it has at
 // least.
 constexpr double kLeast = 0.1;
 // A face that conducts as much as one in the open, about.
 constexpr float kLeastOpen = 0.7f, kMostOpen = 1.5f;
 
-double largestNumber(const StepProblem& problem) {
-  const auto& viscosity = problem.cell_viscosity;
-  return problem.viscous_number * (viscosity.empty() ? 1.0 : *std::max_element(viscosity.begin(), viscosity.end()));
-}
-
 }  // namespace
 
-void Permeability::set(const StepProblem& problem, VelocityMultigrid& velocity, const FaceField<float>& free) {
+void Permeability::set(const StepProblem& problem, double largest_number, VelocityMultigrid& velocity,
+                       const FaceField<float>& free) {
   const Lattice& l = problem.grid.lattice;
   const StaggeredCoefficients<float>& level = problem.coarse.levels[1];
   lasted_ = generation_ == problem.coarse.generation();
   generation_ = problem.coarse.generation();
   if (!lasted_) {
     coarse_ = velocity.coarseCycle(level.mass);
-    const float least = static_cast<float>(std::min(1.0, kLeast / largestNumber(problem)));
+    const float least = static_cast<float>(std::min(1.0, kLeast / largest_number));
     for (auto& field : coarse_) {
-      for (float& w : field) w = std::max(w, least);
+      for (float& k : field) k = std::max(k, least);
     }
   }
   share_.resize(l.size);
@@ -44,9 +40,10 @@ void Permeability::set(const StepProblem& problem, VelocityMultigrid& velocity, 
     for (std::size_t f = 0; f < l.size; ++f) impulse_[a][f] = std::min(free[a][f], impulse_[a][f]);
     fillHalo(l, impulse_[a]);
   }
-  boundary_.resize(l.size);
+  sharp_.resize(l.size);
+  const float* viscosity = problem.cell_viscosity.empty() ? nullptr : problem.cell_viscosity.data();
   forEachRow(l, [&](std::ptrdiff_t row, int, int) {
-    std::uint8_t* out = boundary_.data() + row;
+    std::uint8_t* out = sharp_.data() + row;
     std::fill_n(out, l.faceEnd(0), std::uint8_t{0});
     for (int a = 0; a < 3; ++a) {
       for (const auto at : {row, row + l.stride[a]}) {
@@ -58,8 +55,10 @@ void Permeability::set(const StepProblem& problem, VelocityMultigrid& velocity, 
         }
       }
     }
+    if (viscosity == nullptr) return;
+    for (int i = 0; i < l.n[0]; ++i) out[i] |= problem.viscous_number * viscosity[row + i] < kLeastHolding;
   });
-  fillHalo(l, boundary_);
+  fillHalo(l, sharp_);
 }
 
 }  // namespace monolith

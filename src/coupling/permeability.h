@@ -3,13 +3,13 @@
 // open/mass; what ties it to solids divides that by its effective mass (staggered_operator.h); and what holds the
 // liquid around it back does so, too: of a uniform push liquid takes on the part
 //
-//   w = A^-1 mass 1        1 in the open, 0 on solids, small between many of them
+//   k = A^-1 mass 1        1 in the open, 0 on solids, small between many of them
 //
 // as a porous medium would (Brinkman 1949, Appl. Sci. Res. A1, 27): waves of pressure that are longer than the layer in
-// which viscosity acts, sqrt(N) cells, see conductances smaller by w. Shorter ones do not need it: that is what the
+// which viscosity acts, sqrt(N) cells, see conductances smaller by k. Shorter ones do not need it: that is what the
 // viscous part of the pressure's preconditioner is for (liquid_preconditioner.h).
 //
-// w is found by one multigrid cycle on cells twice as wide. It steers the solve and never decides its answer.
+// k is found by one multigrid cycle on cells twice as wide. It steers the solve and never decides its answer.
 
 #include <cstdint>
 #include <vector>
@@ -19,25 +19,30 @@
 
 namespace monolith {
 
+// Viscous number from which on viscosity acts further than within a cell.
+constexpr double kLeastHolding = 1.0;
+
 class Permeability {
  public:
-  // free: the impulse of faces whose neighbours are held (buildFaceBlocks()). velocity: that of the problem, with more
-  // than one level.
-  void set(const StepProblem& problem, VelocityMultigrid& velocity, const FaceField<float>& free);
-  // Whether w itself is what it was at the call before.
+  // largest_number: viscous number where the viscosity is largest. velocity: that of the problem, with more than one
+  // level. free: the impulse of faces whose neighbours are held (buildFaceBlocks()).
+  void set(const StepProblem& problem, double largest_number, VelocityMultigrid& velocity,
+           const FaceField<float>& free);
+  // Whether k itself is what it was at the call before.
   bool lasted() const { return lasted_; }
   void forget() { generation_ = -1; }
 
-  // min(free, w open/mass) at each face, halo filled.
+  // min(free, k open/mass) at each face, halo filled.
   const FaceField<float>& impulse() const { return impulse_; }
-  // Cells next to a solid or the surface, where pressure may vary from one cell to the next whatever the viscosity.
-  const std::vector<std::uint8_t>& boundary() const { return boundary_; }
+  // Cells between which short waves of pressure matter all the same: next to a solid or the surface, or where the
+  // viscosity is small.
+  const std::vector<std::uint8_t>& sharp() const { return sharp_; }
 
  private:
   FaceField<float> coarse_, impulse_;
   std::vector<float> share_;  // kept for its memory
-  std::vector<std::uint8_t> boundary_;
-  long generation_ = -1;  // of the coarse levels that w was found with
+  std::vector<std::uint8_t> sharp_;
+  long generation_ = -1;  // of the coarse levels that k was found with
   bool lasted_ = false;
 };
 

@@ -32,7 +32,7 @@ struct Plates {
     single = faces.converted<float>();
     const auto& levels = problem->coarse.levels;
     velocity.set(l, single, transfer, levels, levels.size(), problem->coarse.generation(), 3);
-    permeability.set(*problem, velocity, free);
+    permeability.set(*problem, problem->viscous_number, velocity, free);
   }
 
   std::vector<RigidBody> bodies;
@@ -66,7 +66,7 @@ TEST(Permeability, BetweenPlatesIsBrinkmans) {
     }
     for (int k = 0; k < l.n[2]; ++k) {
       // What flows towards a plate is tied to it at the first face.
-      EXPECT_EQ(plates.permeability.boundary()[l.index(7, 9, k)] != 0, k < 2 || k >= l.n[2] - 2) << k;
+      EXPECT_EQ(plates.permeability.sharp()[l.index(7, 9, k)] != 0, k < 2 || k >= l.n[2] - 2) << k;
     }
   }
 }
@@ -75,14 +75,14 @@ TEST(Permeability, LastsWhileTheCoarseLevelsDo) {
   Plates plates(30.0);
   EXPECT_FALSE(plates.permeability.lasted());
   const FaceField<float> before = plates.permeability.impulse();
-  plates.permeability.set(*plates.problem, plates.velocity, plates.free);
+  plates.permeability.set(*plates.problem, 30.0, plates.velocity, plates.free);
   EXPECT_TRUE(plates.permeability.lasted());
   EXPECT_EQ(plates.permeability.impulse(), before);
   plates.problem->coarse.change();
-  plates.permeability.set(*plates.problem, plates.velocity, plates.free);
+  plates.permeability.set(*plates.problem, 30.0, plates.velocity, plates.free);
   EXPECT_FALSE(plates.permeability.lasted());
   plates.permeability.forget();
-  plates.permeability.set(*plates.problem, plates.velocity, plates.free);
+  plates.permeability.set(*plates.problem, 30.0, plates.velocity, plates.free);
   EXPECT_FALSE(plates.permeability.lasted());
 }
 

@@ -57,9 +57,9 @@ struct Built {
     const FaceBlocks<float> single = faces.converted<float>();
     velocity.set(l, single, transfer, problem.coarse.levels, problem.coarse.levels.size(), problem.coarse.generation(),
                  2);
-    permeability.set(problem, velocity, impulse);
+    permeability.set(problem, at.number, velocity, impulse);
     held.set(l, c.has_pressure, c.open, permeability.impulse(), permeability.lasted() ? steady : nullptr,
-             &permeability.boundary());
+             &permeability.sharp());
   }
 
   StepProblem problem;
@@ -119,9 +119,9 @@ void expectTheSame(Built& kept, Built& fresh, const std::string& what) {
   EXPECT_EQ(std::vector<float>(x, x + l.size), std::vector<float>(y, y + l.size)) << what;
   if (!kept.holds) return;
   // The coarse levels may be older than this moment, but what has been made of them is what would be made of them anew.
-  EXPECT_EQ(kept.permeability.boundary(), fresh.permeability.boundary()) << what;
+  EXPECT_EQ(kept.permeability.sharp(), fresh.permeability.sharp()) << what;
   PressureMultigrid anew;
-  anew.set(l, d.has_pressure, d.open, kept.permeability.impulse(), nullptr, &kept.permeability.boundary());
+  anew.set(l, d.has_pressure, d.open, kept.permeability.impulse(), nullptr, &kept.permeability.sharp());
   x = kept.held.cycle(g.data());
   y = anew.cycle(g.data());
   EXPECT_EQ(std::vector<float>(x, x + l.size), std::vector<float>(y, y + l.size)) << what;
