@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <random>
+#include <sstream>
 
 #include "geometry/shape.h"
 #include "scene/resource_path.h"
@@ -200,18 +203,74 @@ TEST(SceneTemplate, LoadsAndNamesEveryKey) {
   }
 }
 
-// The comments promise defaults: a scene without the keys has them.
+// What the template's comment over the line that begins like this says is the default.
+std::string statedDefault(const std::string& text, const std::string& line) {
+  const auto at = text.find("\n" + line + ":");
+  const std::string mark = "Default: ";
+  const auto begin = text.rfind(mark, at);
+  const auto end = text.find('\n', begin);
+  if (at == std::string::npos || begin == std::string::npos) return "no such line: " + line;
+  std::istringstream between(text.substr(end, at - end));
+  for (std::string other; std::getline(between, other);) {
+    if (!other.empty() && other.find('#') == std::string::npos) return "none is stated of " + line;
+  }
+  std::string stated = text.substr(begin + mark.size(), end - begin - mark.size());
+  stated.resize(std::min(stated.size(), stated.find(". ")));
+  if (!stated.empty() && stated.back() == '.') stated.pop_back();
+  return stated;
+}
+
+// A scene that states the template's defaults is the one that leaves them out.
 TEST(SceneTemplate, DefaultsItStatesAreThoseOfTheCode) {
-  const Scene defaults;
-  EXPECT_EQ(defaults.liquid.density, 1000.0);
-  EXPECT_EQ(defaults.liquid.dynamic_viscosity, 0.0);
-  EXPECT_EQ(defaults.liquid.fill_level, 0.0);
-  EXPECT_EQ(defaults.gravity, Vector3d(0.0, 0.0, -9.81));
-  EXPECT_EQ(defaults.time_step, 0.02);
-  EXPECT_EQ(defaults.solver.tolerance, 1e-5);
-  EXPECT_EQ(defaults.solver.maximum_iterations, 200);
-  EXPECT_EQ(defaults.solver.threads, 0);
-  EXPECT_EQ(defaults.solver.cfl, 0.75);
+  const std::string text = readTextFile((kSource / "config/scene_template.yaml").string());
+  const auto lines = [&](const std::string& indent, const std::vector<std::string>& keys) {
+    std::string out;
+    for (const std::string& key : keys) out += indent + key + ": " + statedDefault(text, indent + key) + "\n";
+    return out;
+  };
+  const std::string least =
+      "tank: {size: [0.4, 0.3, 0.3], origin: [-0.2, -0.15, -0.1], cell_width: 0.02}\nbodies:\n  - name: ball\n    "
+      "urdf: " +
+      (kSource / "urdf/steel_sphere.urdf").string() + "\n";
+  const std::string friction = statedDefault(text, "  friction");  // and restitution
+  const std::string all = least + lines("    ", {"position", "velocity", "angular_velocity", "motion"}) +
+                          "    orientation: {" + statedDefault(text, "    orientation") + "}\n" +
+                          lines("", {"gravity", "time_step"}) + "contact: {friction: " + friction +
+                          ", restitution: " + friction + "}\nliquid:\n" +
+                          lines("  ", {"density", "dynamic_viscosity", "fill_level"}) + "solver:\n" +
+                          lines("  ", {"name", "coupling", "discretisation", "time_stepping", "tolerance",
+                                       "maximum_iterations", "threads", "cfl"});
+  const auto load = [](const std::string& yaml) {
+    const std::string file = testing::TempDir() + "defaults.yaml";
+    std::ofstream(file) << yaml;
+    const Scene scene = loadScene(file, SceneResolver());
+    fs::remove(file);
+    return scene;
+  };
+  SCOPED_TRACE(all);
+  Scene stated, omitted;
+  ASSERT_NO_THROW(stated = load(all));
+  omitted = load(least);
+  EXPECT_EQ(stated.liquid.density, omitted.liquid.density);
+  EXPECT_EQ(stated.liquid.dynamic_viscosity, omitted.liquid.dynamic_viscosity);
+  EXPECT_EQ(stated.liquid.fill_level, omitted.liquid.fill_level);
+  EXPECT_EQ(stated.gravity, omitted.gravity);
+  EXPECT_EQ(stated.time_step, omitted.time_step);
+  EXPECT_EQ(stated.contact.friction, omitted.contact.friction);
+  EXPECT_EQ(stated.contact.restitution, omitted.contact.restitution);
+  EXPECT_EQ(stated.solver.name, omitted.solver.name);
+  EXPECT_EQ(stated.solver.coupling, omitted.solver.coupling);
+  EXPECT_EQ(stated.solver.discretisation, omitted.solver.discretisation);
+  EXPECT_EQ(stated.solver.time_stepping, omitted.solver.time_stepping);
+  EXPECT_EQ(stated.solver.tolerance, omitted.solver.tolerance);
+  EXPECT_EQ(stated.solver.maximum_iterations, omitted.solver.maximum_iterations);
+  EXPECT_EQ(stated.solver.threads, omitted.solver.threads);
+  EXPECT_EQ(stated.solver.cfl, omitted.solver.cfl);
+  const BodyDescription &told = stated.bodies.at(0), &untold = omitted.bodies.at(0);
+  EXPECT_EQ(told.X_WB.matrix(), untold.X_WB.matrix());
+  EXPECT_EQ(told.velocity, untold.velocity);
+  EXPECT_EQ(told.angular_velocity, untold.angular_velocity);
+  EXPECT_EQ(told.motion, untold.motion);
 }
 
 }  // namespace
