@@ -5,7 +5,7 @@
 #include <sstream>
 #include <vector>
 
-#include "scene/yaml_map.h"
+#include "scene/nearest_word.h"
 
 namespace monolith {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "node/message_conversion.h"
 #include "node/request_error.h"
-#include "scene/yaml_map.h"
+#include "scene/nearest_word.h"
 
 namespace monolith {
 namespace {

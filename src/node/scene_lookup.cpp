@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "scene/yaml_map.h"
+#include "scene/nearest_word.h"
 
 namespace monolith {
 namespace {

@@ -3,7 +3,7 @@
 #include <exception>
 
 #include "node/request_error.h"
-#include "scene/yaml_map.h"
+#include "scene/nearest_word.h"
 
 namespace monolith {
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "scene/nearest_word.h"
 #include "scene/scene_sections.h"
 
 namespace monolith {

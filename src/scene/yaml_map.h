@@ -26,9 +26,6 @@ class Violations {
 // What a number must fulfil.
 enum class Range { kFinite, kPositive, kNotNegative };
 
-// The word of `known` with the least edit distance to `word`; one that has `word` as a part counts as near.
-std::string nearestWord(const std::string& word, const std::vector<std::string>& known);
-
 // A value as it stands in the file, on one line.
 std::string shownValue(const YAML::Node& node);
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/yaml_map.h"
+#include "scene/nearest_word.h"
 #include "temporary_folder.h"
 
 namespace monolith {
