@@ -160,8 +160,9 @@ def caseSection(name, runs):
              % costName(runs[0]), '|---|---|---|---|---|---|---|---|---|---|---|']
     for r in runs:
         if r['error'] is None and (r.get('failure') or r['goal']):
+            failure = r.get('failure') or '%s is no number' % r['quantity']
             lines.append('| %s | failed: %s | %s | %s | %s | %s | | | | | |' % (
-                r['variant'], r.get('failure', r['quantity'] + ' is no number').replace('\n', ' '), number(r['cells_across']), number(r['dt']),
+                r['variant'], failure.replace('\n', ' '), number(r['cells_across']), number(r['dt']),
                 number(r['tolerance']), r['discretisation']))
             continue
         goal = percent(r['goal']) if r['goal'] and r['judged'] else ''
