@@ -52,16 +52,16 @@ void LiquidPreconditioner::set(const StepProblem& problem, const FaceBlocks<floa
     velocity_.set(l, faces, transfer, problem.coarse.levels, levels, problem.coarse.generation(),
                   holding ? kViscousSmootherDegree : kSmootherDegree);
   }
+  impulse_ = &impulse;
   if (holding) {
     permeability_.set(problem, largest, velocity_, impulse);
     impulse_ = &permeability_.impulse();
-    pressure_.set(l, problem.coefficients.has_pressure, problem.coefficients.open, *impulse_,
-                  permeability_.lasted() ? &problem.steady : nullptr, &permeability_.sharp());
+    if (!permeability_.lasted()) pressure_.distrust();
   } else {
     permeability_.forget();
-    impulse_ = &impulse;
-    pressure_.set(l, problem.coefficients.has_pressure, problem.coefficients.open, impulse, &problem.steady);
   }
+  pressure_.set(l, problem.coefficients.has_pressure, problem.coefficients.open, *impulse_, &problem.steady,
+                holding ? &permeability_.sharp() : nullptr);
   cells.clear(0, build_, g_);
   build_ = cells.build();
   if (!problem.coefficients.viscous || weight_.size() != l.size) assignZero(l.size, weight_);

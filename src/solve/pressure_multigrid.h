@@ -28,6 +28,11 @@ class PressureMultigrid {
            const FaceField<float>& impulse, const SteadyRows* steady = nullptr,
            const std::vector<std::uint8_t>* smoothed = nullptr);
 
+  // The next set() takes no row for steady.
+  void distrust() {
+    if (!levels_.empty()) levels_[0].blocks.distrust();
+  }
+
   // Approximate solution x of L x = b, zero outside of cells with pressure; its halo is filled. It may be changed in
   // place and is valid until the next call.
   float* cycle(const float* b);

@@ -58,6 +58,8 @@ class StencilBlocks {
   };
   const std::vector<Lost>& lost() const { return lost_; }
 
+  // The next build makes all rows anew, steady or not.
+  void distrust() { generation_ = kNoGeneration; }
   // Whether a build with these would leave steady rows as they are.
   bool wouldKeep(const SteadyRows* steady) const { return steady != nullptr && steady->isSuccessor(generation_); }
 
@@ -109,6 +111,7 @@ class StencilBlocks {
     std::int32_t component, begin, end;
   };
   static constexpr std::size_t kSize = Count * kLanes;
+  static constexpr long kNoGeneration = -2;
   using Values = Eigen::Array<Real, Eigen::Dynamic, 1>;  // resized, it is not written by one thread first
 
   // What a build makes of one plane of the lattice.
@@ -172,7 +175,7 @@ class StencilBlocks {
   std::vector<Segment> segments_;        // blocks of one component in one plane
   Values values_;
   std::vector<std::int32_t> row_begin_;  // in blocks_, of every row; one more at the end
-  long generation_ = -2;                 // of the steady rows that it was built with
+  long generation_ = kNoGeneration;      // of the steady rows that it was built with
   Lattice lattice_;
   bool anew_ = true;  // the last build was the first on its lattice
   long build_ = 0;
@@ -189,7 +192,7 @@ void StencilBlocks<Real, Count>::build(const Lattice& l, const std::vector<int>&
   Last last{std::move(blocks_), std::move(values_), std::move(row_begin_)};
   lattice_ = l;
   ++build_;
-  generation_ = steady != nullptr ? steady->generation() : -2;
+  generation_ = steady != nullptr ? steady->generation() : kNoGeneration;
   std::vector<Plane> planes(l.faceEnd(2));
 #pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int k = 0; k < l.faceEnd(2); ++k) buildPlane(k, first, fill, keeps ? steady : nullptr, last, planes[k]);

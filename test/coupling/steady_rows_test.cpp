@@ -58,8 +58,8 @@ struct Built {
     velocity.set(l, single, transfer, problem.coarse.levels, problem.coarse.levels.size(), problem.coarse.generation(),
                  2);
     permeability.set(problem, at.number, velocity, impulse);
-    held.set(l, c.has_pressure, c.open, permeability.impulse(), permeability.lasted() ? steady : nullptr,
-             &permeability.sharp());
+    if (!permeability.lasted()) held.distrust();
+    held.set(l, c.has_pressure, c.open, permeability.impulse(), steady, &permeability.sharp());
   }
 
   StepProblem problem;
