@@ -11,11 +11,6 @@ import math
 import os
 import sys
 
-import matplotlib
-
-matplotlib.use('Agg')
-import matplotlib.pyplot as plt  # noqa: E402
-
 KNOBS = ('cells_across', 'dt', 'tolerance', 'solver', 'discretisation')
 KNOB_NAMES = {'cells_across': 'cell width', 'dt': 'time step', 'tolerance': 'tolerance'}
 
@@ -107,6 +102,11 @@ def dominant(runs):
 
 
 def plotCase(name, runs, folder):
+    # Here, so that the rest needs no package for plots.
+    import matplotlib
+    matplotlib.use('Agg')
+    import matplotlib.pyplot as plt
+
     figure, axes = plt.subplots(figsize=(7, 4.5))
     for (variant, quantity), group in sorted(grouped(runs, lambda r: (r['variant'], r['quantity'])).items()):
         fitted = [r for r in group if r['discretisation'] == 'fitted' and r['error']]

@@ -1,0 +1,68 @@
+// The report of runs, good or not; without its plots, which need packages that the tests do without.
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "framework/run_record.h"
+
+namespace monolith {
+namespace {
+
+namespace fs = std::filesystem;
+using CaseRun = Run;  // ::testing::Test has a Run of its own
+
+std::string reportOf(const std::vector<CaseRun>& runs) {
+  std::string pattern = (fs::temp_directory_path() / "monolith_report_XXXXXX").string();
+  const fs::path folder = mkdtemp(pattern.data());
+  {
+    std::ofstream file(folder / "runs.jsonl");
+    for (const CaseRun& run : runs) file << toJson(run, {"abc", "machine"});
+  }
+  std::ofstream(folder / "make.py") << "import sys\n"
+                                       "sys.dont_write_bytecode = True\n"
+                                       "sys.path.insert(0, '" MONOLITH_SOURCE_DIR "/validation')\n"
+                                       "import report\n"
+                                       "report.plotCase = lambda *arguments: None\n"
+                                       "report.main()\n";
+  const std::string command = "/usr/bin/python3 '" + (folder / "make.py").string() + "' '" +
+                              (folder / "runs.jsonl").string() + "' '" + folder.string() + "'";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+  std::ostringstream text;
+  text << std::ifstream(folder / "REPORT.md").rdbuf();
+  fs::remove_all(folder);
+  return text.str();
+}
+
+CaseRun runAt(double cells_across) {
+  CaseRun run;
+  run.case_name = "case";
+  run.variant = "variant";
+  run.numerics.cells_across = cells_across;
+  run.cpu_s = 2.0;
+  run.simulated_s = 1.0;
+  return run;
+}
+
+TEST(Report, TellsGoodMissedAndFailedRuns) {
+  CaseRun good = runAt(8.0), missed = runAt(4.0), failed = runAt(16.0), undefined = runAt(32.0);
+  good.measurements = {{"drag", 1.01, 1.0, 0.02}};
+  missed.measurements = {{"drag", 1.04, 1.0, 0.02}};
+  failed.failure = "step 3 failed,\nnot converged";
+  undefined.measurements = {{"drag", std::nan(""), 1.0, 0.02}};
+  const std::string some = reportOf({good, missed});
+  EXPECT_NE(some.find("1 of 2 missed"), std::string::npos) << some;
+  EXPECT_NE(some.find("| variant | drag | 8 |"), std::string::npos) << some;
+  const std::string all = reportOf({good, missed, failed, undefined});
+  EXPECT_NE(all.find("failed: 2"), std::string::npos) << all;
+  EXPECT_NE(all.find("| variant | failed: step 3 failed, not converged | 16 |"), std::string::npos) << all;
+  EXPECT_NE(all.find("| variant | failed: drag is no number | 32 |"), std::string::npos) << all;
+}
+
+}  // namespace
+}  // namespace monolith
