@@ -339,7 +339,10 @@ void PressureMultigrid::descend(std::size_t index) {
     fillHalo(level.lattice, level.x);
     return;
   }
-  if (level.partial) assignZero(level.x.size(), level.x);
+  if (level.partial) {
+    countWork(level.x.size(), 0.0, sizeof(float));
+    assignZero(level.x.size(), level.x);
+  }
   smooth(level, kSmootherDegree, true);
   residual(level, level.next.data());
   Level& coarse = levels_[index + 1];

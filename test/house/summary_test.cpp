@@ -1,7 +1,6 @@
 // The count of test results: what passes, fails, is missing or empty, as ./tank test counts it.
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 #include <sys/wait.h>
 
 #include <cstdio>
@@ -9,6 +8,8 @@
 #include <fstream>
 #include <string>
 #include <vector>
+
+#include "temporary_folder.h"
 
 namespace {
 
@@ -22,13 +23,9 @@ const std::string kSkipped = "<testcase classname='A' name='off'><skipped messag
 class SummaryTest : public ::testing::Test {
  protected:
   SummaryTest() {
-    std::string pattern = (fs::temp_directory_path() / "monolith_summary_XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
     fs::create_directory(folder_ / "results");
     writeLog("");
   }
-
-  ~SummaryTest() override { fs::remove_all(folder_); }
 
   fs::path result(const std::string& name) const { return folder_ / "results" / name; }
 
@@ -58,7 +55,8 @@ class SummaryTest : public ::testing::Test {
 
   bool shows(const std::string& text) const { return output_.find(text) != std::string::npos; }
 
-  fs::path folder_;
+  const monolith::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
   std::string output_;
   int exit_code_ = -1;
 };

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <random>
 #include <sstream>
@@ -14,6 +13,7 @@
 #include "scene/resource_path.h"
 #include "scene/scene_file.h"
 #include "scene/urdf_body.h"
+#include "temporary_folder.h"
 
 namespace monolith {
 namespace {
@@ -240,12 +240,9 @@ TEST(SceneTemplate, DefaultsItStatesAreThoseOfTheCode) {
                           lines("  ", {"density", "dynamic_viscosity", "fill_level"}) + "solver:\n" +
                           lines("  ", {"name", "coupling", "discretisation", "time_stepping", "tolerance",
                                        "maximum_iterations", "threads", "cfl"});
-  const auto load = [](const std::string& yaml) {
-    const std::string file = testing::TempDir() + "defaults.yaml";
-    std::ofstream(file) << yaml;
-    const Scene scene = loadScene(file, SceneResolver());
-    fs::remove(file);
-    return scene;
+  const TemporaryFolder folder;
+  const auto load = [&](const std::string& yaml) {
+    return loadScene(folder.write("scene.yaml", yaml), SceneResolver());
   };
   SCOPED_TRACE(all);
   Scene stated, omitted;

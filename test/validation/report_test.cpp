@@ -1,41 +1,37 @@
 // The report of runs, good or not; without its plots, which need packages that the tests do without.
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include "framework/run_record.h"
+#include "temporary_folder.h"
 
 namespace monolith {
 namespace {
 
-namespace fs = std::filesystem;
 using CaseRun = Run;  // ::testing::Test has a Run of its own
 
 std::string reportOf(const std::vector<CaseRun>& runs) {
-  std::string pattern = (fs::temp_directory_path() / "monolith_report_XXXXXX").string();
-  const fs::path folder = mkdtemp(pattern.data());
-  {
-    std::ofstream file(folder / "runs.jsonl");
-    for (const CaseRun& run : runs) file << toJson(run, {"abc", "machine"});
-  }
-  std::ofstream(folder / "make.py") << "import sys\n"
-                                       "sys.dont_write_bytecode = True\n"
-                                       "sys.path.insert(0, '" MONOLITH_SOURCE_DIR "/validation')\n"
-                                       "import report\n"
-                                       "report.plotCase = lambda *arguments: None\n"
-                                       "report.main()\n";
-  const std::string command = "/usr/bin/python3 '" + (folder / "make.py").string() + "' '" +
-                              (folder / "runs.jsonl").string() + "' '" + folder.string() + "'";
+  const TemporaryFolder folder;
+  std::string lines;
+  for (const CaseRun& run : runs) lines += toJson(run, {"abc", "machine"});
+  const std::string command = "/usr/bin/python3 '" +
+                              folder.write("make.py",
+                                           "import sys\n"
+                                           "sys.dont_write_bytecode = True\n"
+                                           "sys.path.insert(0, '" MONOLITH_SOURCE_DIR
+                                           "/validation')\n"
+                                           "import report\n"
+                                           "report.plotCase = lambda *arguments: None\n"
+                                           "report.main()\n") +
+                              "' '" + folder.write("runs.jsonl", lines) + "' '" + folder.path() + "'";
   EXPECT_EQ(std::system(command.c_str()), 0);
   std::ostringstream text;
-  text << std::ifstream(folder / "REPORT.md").rdbuf();
-  fs::remove_all(folder);
+  text << std::ifstream(folder.path() + "/REPORT.md").rdbuf();
   return text.str();
 }
 

@@ -13,7 +13,7 @@ namespace monolith {
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "monolith_scene_XXXXXX").string();
+    std::string pattern = (std::filesystem::temp_directory_path() / "monolith_XXXXXX").string();
     if (!mkdtemp(pattern.data())) throw std::runtime_error("no temporary folder");
     path_ = pattern;
   }
