@@ -1,5 +1,7 @@
 // The bodies' rows of the fitted gradient: buildBodyRows() of stokes_coefficients.h.
 
+#include <cstring>
+
 #include "coupling/stokes_samples.h"
 
 namespace monolith {
@@ -12,14 +14,17 @@ class RowBuilder {
              const MacGrid& grid)
       : samples_(samples), solids_(solids), bodies_(bodies), grid_(grid) {}
 
-  // The solid ends of a segment of component `axis` from face a at x_a to face b at x_b = x_a + h along `along`, as
-  // they enter factor * (U_b - U_a).
-  void addSegment(int axis, std::ptrdiff_t a, std::ptrdiff_t b, const Eigen::Vector3d& x_a, int along, double factor,
-                  const FittedSegment& s, std::ptrdiff_t sample, std::vector<BodyRow>& out) const {
-    Eigen::Vector3d x_b = x_a;
-    x_b[along] += grid_.h;
+  // The solid ends of a segment of component `axis` from face a at x_a to the next along `along`, as they enter
+  // factor * (U_b - U_a).
+  void addSegment(int axis, std::ptrdiff_t a, const Eigen::Vector3d& x_a, int along, double factor,
+                  std::ptrdiff_t sample, std::vector<BodyRow>& out) const {
+    const auto b = a + samples_.lattice.stride[along];
     const bool solid_a = isSolid(samples_.kind(axis, a));
     const bool solid_b = isSolid(samples_.kind(axis, b));
+    if (!solid_a && !solid_b) return;
+    const FittedSegment s = samples_.segment(axis, a, along);
+    Eigen::Vector3d x_b = x_a;
+    x_b[along] += grid_.h;
     Eigen::Vector3d surface = x_a;
     if (!s.both_solid) surface[along] += (solid_a ? 1.0 - s.theta : s.theta) * grid_.h;
     if (solid_a) addEnd(axis, a, x_a, s.both_solid ? x_a : surface, -factor, sample, out);
@@ -83,22 +88,25 @@ void buildBodyRows(const MacGrid& grid, const SolidFractions& solids, const std:
   const RowBuilder rows(samples, solids, bodies, grid);
   const int end_j = l.faceEnd(1);
   const int end_k = l.faceEnd(2);
+  const int width = l.faceEnd(0);
   std::vector<BodyRows> slabs(end_k);
   const std::vector<char> near = nearBodies(l, solids);
   // Bodies may lie together in a few slabs.
 #pragma omp parallel for schedule(dynamic)
   for (int k = 0; k < end_k; ++k) {
     BodyRows& slab = slabs[k];
+    std::vector<std::uint8_t> mark;
     for (int j = 0; j < end_j; ++j) {
-      for (int i = 0; i < l.faceEnd(0); ++i) {
-        const auto c = l.index(i, j, k);
+      const auto row = l.index(0, j, k);
+      if (std::memchr(near.data() + row, 1, width) == nullptr) continue;
+      samples.markCells(row, width, mark);
+      for (int i = 0; i < width; ++i) {
+        const auto c = row + i;
         // Nothing of a body within reach of the samples of this cell.
-        if (!near[c] || solids.cell_distance[c] > 2.5) continue;
+        if (!near[c] || mark[i] != SampleBuilder::kMixed || solids.cell_distance[c] > 2.5) continue;
         for (int a = 0; a < 3; ++a) {
-          const auto sa = l.stride[a];
           if (coefficients.normal[a][c] > 0.0) {
-            const FittedSegment s = samples.segment(a, c, a);
-            rows.addSegment(a, c, c + sa, grid.faceCenter(a, i, j, k), a, 1.0, s, c, slab.normal[a]);
+            rows.addSegment(a, c, grid.faceCenter(a, i, j, k), a, 1.0, c, slab.normal[a]);
           }
           if (coefficients.drag[a][c] > 0.0 && solids.owner[a][c] >= 0) {
             const int owner = solids.owner[a][c];
@@ -109,8 +117,6 @@ void buildBodyRows(const MacGrid& grid, const SolidFractions& solids, const std:
         }
         for (int p = 0; p < 3; ++p) {
           const auto [a, b] = kShearPairs[p];
-          const auto sa = l.stride[a];
-          const auto sb = l.stride[b];
           const double factor_a = coefficients.shear[p][0][c];
           const double factor_b = coefficients.shear[p][1][c];
           if (factor_a == 0.0 && factor_b == 0.0) continue;
@@ -118,8 +124,8 @@ void buildBodyRows(const MacGrid& grid, const SolidFractions& solids, const std:
           x_a[b] -= h;
           Eigen::Vector3d x_b = grid.faceCenter(b, i, j, k);
           x_b[a] -= h;
-          rows.addSegment(a, c - sb, c, x_a, b, factor_a, samples.segment(a, c - sb, b), c, slab.shear[p]);
-          rows.addSegment(b, c - sa, c, x_b, a, factor_b, samples.segment(b, c - sa, a), c, slab.shear[p]);
+          rows.addSegment(a, c - l.stride[b], x_a, b, factor_a, c, slab.shear[p]);
+          rows.addSegment(b, c - l.stride[a], x_b, a, factor_b, c, slab.shear[p]);
         }
       }
     }
