@@ -89,7 +89,7 @@ void PressureMultigrid::set(const Lattice& l, const std::vector<std::uint8_t>& h
     findExtension(coarse, levels_[index]);
     last = std::move(coarse);
   }
-  levels_.back().range.ratio = count > 1 ? kCoarsestRatio : kRatio;
+  levels_.back().range.ratio = kCoarsestRatio;
   coarsest_cells_.clear();
   if (count > 1) invert(last, levels_.back());
 }
@@ -142,6 +142,11 @@ void PressureMultigrid::coarsen(const Lattice& from, const Network& fine, const 
 void PressureMultigrid::finish(const Network& network, const SteadyRows* steady,
                                const std::vector<std::uint8_t>* smoothed, Level& level) const {
   const Lattice& l = level.lattice;
+  if (level.partial != (smoothed != nullptr)) {
+    // Other blocks, and fields that held something beyond them.
+    level.blocks.distrust();
+    level.build = -1;
+  }
   level.partial = smoothed != nullptr;
   if (!level.blocks.wouldKeep(steady) || level.mask.size() != l.size) assignZero(l.size, level.mask);
   if (&level != &levels_[0]) assignZero(l.size, level.b);

@@ -1,8 +1,8 @@
 #pragma once
-// One geometric multigrid V-cycle for the pressure block L = C mass^-1 C^T with the effective mass of
-// staggered_operator.h, a seven-point operator, in single precision. Linear: the same map on every call.
+// One geometric multigrid V-cycle for the pressure block L = C K C^T, K the impulse of a face
+// (liquid_preconditioner.h), a seven-point operator, in single precision. Linear: the same map on every call.
 //
-// L is a network: conductance open^2/mass on every face between two cells with pressure, and towards the air, where the
+// L is a network: conductance open^2 K on every face between two cells with pressure, and towards the air, where the
 // pressure is zero. A coarse face takes the mean of the four fine ones that it consists of (aggregation, Braess 1995,
 // with the factor that makes it consistent), so cut cells, thin gaps and the free surface coarsen without geometry; the
 // conductance to the air follows the surface's distance to the centre of the coarse cell.
