@@ -17,6 +17,7 @@ constexpr double kLargestShift = 0.1;      // cells in one correction
 // Half-width, in cells, of the band around the surface in which the level set is a distance; beyond it is just as large
 // as that, which is further than anyone looks.
 constexpr double kBand = 6.0;
+constexpr double kLongestWay = kBand - 1.0;  // cells in one advection, kTravelToRedistance being undone before the next
 constexpr int kBandPlanes = static_cast<int>(kBand);  // its reach along an axis
 constexpr double kSampleBeyondSolid = 0.75;  // cells: outside, where the value is the liquid's own
 
@@ -101,11 +102,16 @@ FreeSurface::FreeSurface(const MacGrid& grid, double fill_height, const std::vec
 
 void FreeSurface::advect(const FaceField<double>& velocity, double dt, double maximum_speed) {
   if (full_ || empty_ || maximum_speed == 0.0) return;
-  advectCells(grid_, velocity, distance_, dt, kBand, scratch_.field);
-  distance_.swap(scratch_.field);
-  extendIntoHalo(grid_.lattice, distance_);
-  travelled_ += maximum_speed * dt / grid_.h;
-  if (travelled_ > kTravelToRedistance) redistance();
+  // Only in the band does the level set tell where the surface is: a way that is longer is gone in parts.
+  const double cells = maximum_speed * dt / grid_.h;
+  const double parts = std::max(1.0, std::ceil(cells / kLongestWay));
+  for (double part = 0.0; part < parts; part += 1.0) {
+    advectCells(grid_, velocity, distance_, dt / parts, kBand, scratch_.field);
+    distance_.swap(scratch_.field);
+    extendIntoHalo(grid_.lattice, distance_);
+    travelled_ += cells / parts;
+    if (travelled_ > kTravelToRedistance) redistance();
+  }
 }
 
 void FreeSurface::redistance() {

@@ -49,6 +49,29 @@ TEST(FreeSurface, ASeamIsNoSurface) {
   EXPECT_NEAR(FreeSurface(grid, 0.225, {upper}).volume(open), 0.4 * 0.36, 1e-9);
 }
 
+// As far as the liquid goes, also where that is further than the band in which the level set is a distance.
+TEST(FreeSurface, LiquidMayCrossManyCellsAtOnce) {
+  MacGrid grid;
+  grid.lattice = Lattice({4, 4, 64}, {true, true, false});
+  grid.h = 0.05;
+  const std::vector<double> open(grid.lattice.size, 1.0);
+  for (const double cells : {3.7, 8.3, 12.6, 25.0}) {
+    FreeSurface surface(grid, 0.0,
+                        {Eigen::AlignedBox3d(Eigen::Vector3d(0.0, 0.0, 2.0), Eigen::Vector3d(0.2, 0.2, 2.9))});
+    FaceField<double> velocity;
+    for (int a = 0; a < 3; ++a) velocity[a].assign(grid.lattice.size, a == 2 ? -1.0 : 0.0);
+    surface.advect(velocity, cells * grid.h, 1.0);
+    EXPECT_NEAR(surface.volume(open), 0.9 * 0.04, 1e-9) << cells;
+    for (int k = 0; k < 64; ++k) {
+      const double z = (k + 0.5) * grid.h + cells * grid.h;
+      const double distance = std::max(2.0 - z, z - 2.9) / grid.h;
+      const double found = surface.distance()[grid.lattice.index(1, 2, k)];
+      if (std::abs(distance) < 4.0) EXPECT_NEAR(found, distance, 1e-6) << cells << " cells, " << k;
+      if (std::abs(distance) >= 4.0) EXPECT_EQ(found < 0.0, distance < 0.0) << cells << " cells, " << k;
+    }
+  }
+}
+
 TEST(FreeSurface, CorrectionReachesTheTargetAndSaysByHowMuch) {
   const MacGrid grid = cube(12, 0.05);
   const std::vector<double> open(grid.lattice.size, 1.0);
