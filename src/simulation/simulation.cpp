@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <sstream>
 #include <stdexcept>
 
 #include "fluid/advection.h"
@@ -37,6 +38,13 @@ void Simulation::Impl::initialise() {
   detector = std::make_unique<ContactDetector>(state.bodies, walls);
   wrenches.assign(state.bodies.size(), Wrench());
   state.surface.emplace_back(grid, scene.liquid.fill_level, scene.liquid.boxes);
+  if (state.surface[0].empty() && (scene.liquid.fill_level > 0.0 || !scene.liquid.boxes.empty())) {
+    std::ostringstream text;
+    text << scene.source
+         << ": liquid: fill_level and boxes hold the centre of no cell, expected more than half of tank/"
+         << "cell_width, which is " << grid.h << " m, or no liquid at all";
+    throw SceneError(text.str());
+  }
   for (auto& field : state.coupled.velocity) field.assign(grid.lattice.size, 0.0);
   for (auto& field : state.known) field.assign(grid.lattice.size, 1);
   state.coupled.pressure = hydrostaticPressure(grid, state.surface[0], scene.liquid.density, scene.gravity);

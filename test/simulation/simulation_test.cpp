@@ -41,6 +41,22 @@ TEST(Simulation, AnEmptyTankIsRigidBodyDynamicsAndPaysForNothingElse) {
               1e-3 * 9.81 * scene.bodies[0].mass);
 }
 
+// Liquid that the cells are too wide for is not left out in silence.
+TEST(Simulation, RefusesLiquidShallowerThanHalfACell) {
+  Scene boxed = tank(0.0, 1.0);
+  boxed.liquid.boxes = {Eigen::AlignedBox3d(Eigen::Vector3d(0.02, 0.02, 0.0), Eigen::Vector3d(0.14, 0.14, 0.003))};
+  for (const Scene& scene : {tank(0.004, 1.0), boxed}) {
+    try {
+      Simulation simulation(scene);
+      ADD_FAILURE();
+    } catch (const SceneError& error) {
+      EXPECT_NE(std::string(error.what()).find("fill_level"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("cell_width"), std::string::npos) << error.what();
+    }
+  }
+  EXPECT_GT(Simulation(tank(0.006, 1.0)).step().liquid_volume, 0.0);
+}
+
 TEST(Simulation, AStillTankStaysStillAtAnyLevel) {
   for (const double viscosity : {0.0, 1.0}) {
     for (const double level : {0.05, 0.0537, 0.080004, 0.16}) {
