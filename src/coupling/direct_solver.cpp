@@ -64,7 +64,9 @@ void DirectSolver::Impl::prepare(StepProblem& p) {
     failure = "CHOLMOD could not factor the stress system of " + std::to_string(s.unknowns()) + " unknowns";
     return;
   }
-  A_inverse_B = s.unknowns() > 0 ? Eigen::MatrixXd(factor.solve(Eigen::MatrixXd(B))) : Eigen::MatrixXd(0, n + border);
+  // CHOLMOD takes no right side of no columns.
+  A_inverse_B.resize(s.unknowns(), n + border);
+  if (A_inverse_B.size() > 0) A_inverse_B = factor.solve(Eigen::MatrixXd(B));
   Eigen::MatrixXd S = B.transpose() * A_inverse_B;
   S = 0.5 * (S + S.transpose()).eval();
   for (std::size_t b = 0; b < p.free.size(); ++b) S.block<6, 6>(6 * b, 6 * b) += p.inertia[b];
