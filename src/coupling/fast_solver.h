@@ -1,6 +1,6 @@
 #pragma once
 // `fast`: flexible GMRES on the saddle point, matrix-free, with the projection preconditioner (Griffith 2009; Cai,
-// Nonaka, Bell, Griffith & Donev 2014): one multigrid cycle on A_uu, one on L = C mass^-1 C^T with p^ = phi + 2 N g
+// Nonaka, Bell, Griffith & Donev 2014): one multigrid cycle on A_uu, one on L = C K C^T with p^ = phi + 2 N g
 // (Cahouet & Chabard 1988), and the bodies by an approximate Schur complement S, their inertia and their resistance to
 // motion in this liquid, which ages slowly and is kept while it serves.
 //

@@ -7,9 +7,10 @@
 //   u = u* + K C^T L^-1 g                the projection method (Griffith 2009; Cai et al. 2014)
 //
 // w = 2 N times the part of the cell's normal stress that is in the liquid: next to a free surface the Schur complement
-// is as much softer. K is the impulse of a face: 1/mass without viscosity, and then all this is exact. With viscosity
-// it follows the permeability (permeability.h), which keeps iterations from growing with N; the waves that are left to
-// L are long then, and its finest level is smoothed at boundaries alone.
+// is as much softer. K is the impulse of a face: its open part over its mass and what ties it to solids; without
+// viscosity all this is exact. From kLeastHolding on it follows the permeability (permeability.h), which keeps
+// iterations from growing with N; the waves that are left to L are long then, and its finest level is smoothed at
+// boundaries alone.
 
 #include <vector>
 

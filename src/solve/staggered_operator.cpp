@@ -114,97 +114,6 @@ void addPressureForce(const StaggeredCoefficients<Real>& c, const std::vector<Re
   });
 }
 
-template <class Real>
-void addPressureImpulse(const StaggeredCoefficients<Real>& c, const FaceField<Real>& mass, const std::vector<Real>& p,
-                        FaceField<Real>& U) {
-  const Lattice& l = c.lattice;
-  const int width = l.faceEnd(0);
-  forEachRow(l, [&](std::ptrdiff_t row, int, int) {
-    const Real* q = p.data() + row;
-    for (int a = 0; a < 3; ++a) {
-      const Real* m = mass[a].data() + row;
-      const Real* o = c.open[a].data() + row;
-      Real* u = U[a].data() + row;
-      const auto sa = l.stride[a];
-#pragma omp simd
-      for (int i = 0; i < width; ++i) u[i] += m[i] > Real(0) ? o[i] * (q[i - sa] - q[i]) / m[i] : Real(0);
-    }
-  });
-}
-
-template <class Real>
-void smoothingDiagonal(const StaggeredCoefficients<Real>& c, FaceField<Real>& diagonal) {
-  const Lattice& l = c.lattice;
-  const int width = l.faceEnd(0);
-  for (auto& field : diagonal) field.resize(l.size);
-  forEachRow(l, [&](std::ptrdiff_t row, int, int) {
-    for (int a = 0; a < 3; ++a) {
-      const auto sa = l.stride[a];
-      const auto& has = c.mass[a];
-      for (auto f = row; f < row + width; ++f) {
-        Real sum = has[f];
-        if (sum > Real(0) && c.viscous) {
-          Real others = Real(0);
-          sum += c.drag[a][f] + c.normal[a][f] + c.normal[a][f - sa];
-          if (has[f + sa] > Real(0)) others += c.normal[a][f];
-          if (has[f - sa] > Real(0)) others += c.normal[a][f - sa];
-          for (int p = 0; p < 3; ++p) {
-            for (int place = 0; place < 2; ++place) {
-              if (kShearPairs[p][place] != a) continue;
-              const int b = kShearPairs[p][1 - place];
-              const auto sb = l.stride[b];
-              const auto& k = c.shear[p][place];
-              const auto& k_other = c.shear[p][1 - place];
-              sum += k[f] * k[f] + k[f + sb] * k[f + sb];
-              if (has[f - sb] > Real(0)) others += k[f] * k[f];
-              if (has[f + sb] > Real(0)) others += k[f + sb] * k[f + sb];
-              for (const auto edge : {f, f + sb}) {
-                const Real cross = k[edge] * k_other[edge];
-                if (c.mass[b][edge] > Real(0)) others += cross;
-                if (c.mass[b][edge - sa] > Real(0)) others += cross;
-              }
-            }
-          }
-          sum = std::max(sum, (sum + others) / Real(kLargestScaled));
-        }
-        diagonal[a][f] = sum;
-      }
-    }
-  });
-}
-
-template <class Real>
-void effectiveMass(const StaggeredCoefficients<Real>& c, FaceField<Real>& mass) {
-  const Lattice& l = c.lattice;
-  const int width = l.faceEnd(0);
-  for (auto& field : mass) field.resize(l.size);
-  for (int a = 0; a < 3; ++a) {
-    const auto& has = c.mass[a];
-    forEachRow(l, [&](std::ptrdiff_t row, int, int) {
-      for (auto f = row; f < row + width; ++f) {
-        Real sum = has[f];
-        if (sum > Real(0) && c.viscous) {
-          const auto sa = l.stride[a];
-          sum += c.drag[a][f];
-          if (!(has[f + sa] > Real(0))) sum += c.normal[a][f];
-          if (!(has[f - sa] > Real(0))) sum += c.normal[a][f - sa];
-          for (int p = 0; p < 3; ++p) {
-            for (int place = 0; place < 2; ++place) {
-              if (kShearPairs[p][place] != a) continue;
-              const auto& k = c.shear[p][place];
-              const auto sb = l.stride[kShearPairs[p][1 - place]];
-              if (!(has[f - sb] > Real(0))) sum += k[f] * k[f];
-              if (!(has[f + sb] > Real(0))) sum += k[f + sb] * k[f + sb];
-            }
-          }
-        }
-        mass[a][f] = sum;
-      }
-    });
-    fillHalo(l, mass[a]);
-  }
-}
-
 template <class To, class From>
 StaggeredCoefficients<To> convertCoefficients(const StaggeredCoefficients<From>& c) {
   StaggeredCoefficients<To> out;
@@ -222,17 +131,12 @@ StaggeredCoefficients<To> convertCoefficients(const StaggeredCoefficients<From>&
   return out;
 }
 
-#define MONOLITH_INSTANTIATE(Real)                                                                                  \
-  template void computeStress(const StaggeredCoefficients<Real>&, const FaceField<Real>&, StressSamples<Real>&);     \
+#define MONOLITH_INSTANTIATE(Real)                                                                                    \
+  template void computeStress(const StaggeredCoefficients<Real>&, const FaceField<Real>&, StressSamples<Real>&);      \
   template void applyMomentum(const StaggeredCoefficients<Real>&, const FaceField<Real>&, const StressSamples<Real>&, \
-                              FaceField<Real>&);                                                                     \
-  template void computeDivergence(const StaggeredCoefficients<Real>&, const FaceField<Real>&, std::vector<Real>&);   \
-  template void addPressureForce(const StaggeredCoefficients<Real>&, const std::vector<Real>&, Real,                 \
-                                 FaceField<Real>&);                                                                  \
-  template void addPressureImpulse(const StaggeredCoefficients<Real>&, const FaceField<Real>&,                        \
-                                   const std::vector<Real>&, FaceField<Real>&);                                       \
-  template void effectiveMass(const StaggeredCoefficients<Real>&, FaceField<Real>&);                                  \
-  template void smoothingDiagonal(const StaggeredCoefficients<Real>&, FaceField<Real>&);
+                              FaceField<Real>&);                                                                      \
+  template void computeDivergence(const StaggeredCoefficients<Real>&, const FaceField<Real>&, std::vector<Real>&);    \
+  template void addPressureForce(const StaggeredCoefficients<Real>&, const std::vector<Real>&, Real, FaceField<Real>&);
 MONOLITH_INSTANTIATE(double)
 MONOLITH_INSTANTIATE(float)
 #undef MONOLITH_INSTANTIATE

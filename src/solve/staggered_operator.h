@@ -81,23 +81,6 @@ void computeDivergence(const StaggeredCoefficients<Real>& c, const FaceField<Rea
 template <class Real>
 void addPressureForce(const StaggeredCoefficients<Real>& c, const std::vector<Real>& p, Real factor, FaceField<Real>& U);
 
-// U_a += (C^T p)_a / mass_a on faces with mass; p's halo must be filled.
-template <class Real>
-void addPressureImpulse(const StaggeredCoefficients<Real>& c, const FaceField<Real>& mass, const std::vector<Real>& p,
-                        FaceField<Real>& U);
-
-// Diagonal D of the viscous block, raised where needed so that the spectrum of D^-1 A lies in [0, kLargestScaled] for
-// sure (Gershgorin): a smoother must not diverge at a face that strong ties surround. Zero where there is no unknown.
-constexpr double kLargestScaled = 2.6;
-template <class Real>
-void smoothingDiagonal(const StaggeredCoefficients<Real>& c, FaceField<Real>& diagonal);
-
-// Mass plus what ties a face to solids: the viscous block applied to a constant, one component at a time. This is the
-// inertia against which the pressure moves the face when viscosity holds its neighbours, so the preconditioner's
-// projection divides by it. Zero where there is no unknown.
-template <class Real>
-void effectiveMass(const StaggeredCoefficients<Real>& c, FaceField<Real>& mass);
-
 // The same coefficients in another precision.
 template <class To, class From>
 StaggeredCoefficients<To> convertCoefficients(const StaggeredCoefficients<From>& c);

@@ -17,6 +17,10 @@
 
 namespace monolith {
 
+// The smoothing diagonal is that of A, raised where needed so that the spectrum of D^-1 A lies in [0, kLargestScaled]
+// for sure (Gershgorin): a smoother must not diverge at a face that strong ties surround.
+constexpr double kLargestScaled = 2.6;
+
 // Places of the coefficients in a face's pattern.
 struct FaceStencil {
   enum : int {
