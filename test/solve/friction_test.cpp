@@ -120,15 +120,39 @@ TEST(StaggeredProjections, RandomContactsObeyCoulombsLaw) {
   EXPECT_GE(staggered, 45);
 }
 
-TEST(StaggeredProjections, SweepsTakeOverWhereAlternationCycles) {
-  // Normal and tangent coupled so strongly that friction of full size reverses the normal problem.
-  Eigen::MatrixXd D(3, 3);
-  D << 1.0, 0.9, 0.0, 0.9, 1.0, 0.0, 0.0, 0.0, 1.0;
-  const Eigen::Vector3d w0(-1.0, 0.5, 0.0);
+// Normal and tangent coupled so strongly, with so much friction, that alternation cycles and Newton's method leads nowhere
+// from its iterates: contact by contact the law is met, by slip in directions that only the search over all finds.
+void expectSwept(const Eigen::MatrixXd& D, const Eigen::VectorXd& w0, const Eigen::VectorXd& mu) {
   Eigen::VectorXd r;
-  const FrictionReport report = solveFrictionalContact(D, w0, Eigen::VectorXd::Constant(1, 0.9), 1e-10, r);
-  ASSERT_TRUE(report.solved);
-  expectLaw(D, w0, Eigen::VectorXd::Constant(1, 0.9), r, 1e-8);
+  const FrictionReport report = solveFrictionalContact(D, w0, mu, 1e-10, r);
+  ASSERT_TRUE(report.solved) << report.residual;
+  EXPECT_FALSE(report.staggered);
+  EXPECT_GT(report.iterations, 200);  // after all the alternations there are
+  EXPECT_LE(coulombResidual(D, w0, mu, r), 1e-10 * w0.cwiseAbs().maxCoeff());
+  expectLaw(D, w0, mu, r, 1e-8);
+  const Eigen::VectorXd w = D * r + w0;
+  for (Eigen::Index c = 0; c < mu.size(); ++c) EXPECT_GT(w.segment<2>(mu.size() + 2 * c).norm(), 1e-2) << c;
+}
+
+TEST(StaggeredProjections, SweepsTakeOverWhereAlternationCycles) {
+  Eigen::Matrix3d D;
+  D << 3.5, 2.5, 1.0, 2.5, 2.75, 2.5, 1.0, 2.5, 4.5;
+  expectSwept(D, Eigen::Vector3d(-2.0, -1.0, 1.5), Eigen::VectorXd::Constant(1, 4.0));
+  D << 2.25, 1.0, 0.0, 1.0, 2.25, -3.25, 0.0, -3.25, 6.5;
+  expectSwept(D, Eigen::Vector3d(-0.5, -1.0, 1.0), Eigen::VectorXd::Constant(1, 2.5));
+}
+
+TEST(StaggeredProjections, SweepsCarryFromContactToContact) {
+  Eigen::Matrix<double, 6, 6> D;
+  D << 9.75, 1.5, 5.0, 1.5, 2.0, 2.25,    //
+      1.5, 5.5, -3.0, 1.75, -6.0, 0.5,    //
+      5.0, -3.0, 16.5, 5.75, 2.75, 2.75,  //
+      1.5, 1.75, 5.75, 4.0, -3.25, 1.25,  //
+      2.0, -6.0, 2.75, -3.25, 14.0, 1.75,  //
+      2.25, 0.5, 2.75, 1.25, 1.75, 2.0;
+  Eigen::Matrix<double, 6, 1> w0;
+  w0 << -0.5, 0.0, -0.5, 0.0, 1.0, 0.0;
+  expectSwept(D, w0, Eigen::Vector2d(4.0, 2.5));
 }
 
 }  // namespace
