@@ -189,21 +189,29 @@ def caseSection(name, runs):
     return lines + ['']
 
 
+def adviceRuns(runs):
+    """Of the default method the failures, and in all runs the quantities that have a goal in any of the case's."""
+    wanted = {r['quantity'] for r in runs if r['goal'] and not r.get('yes_or_no')}
+    return [r for r in runs if r['discretisation'] == 'fitted' and r['solver'] == 'fast' and
+            (r.get('failure') or r['quantity'] in wanted)]
+
+
 def advice(cases):
     """For each wanted error and case, the cheapest numerics with which every variant stays below it."""
     lines = ['## Advice', '',
              'For each wanted error the cheapest numerics of the runs above with which the largest error over the case\'s '
-             'variants stays below it, and what that cost.', '',
+             'variants stays below it, and what that cost. Every quantity counts that has a goal in any run of its case, also '
+             'where the goal is left out because the grid is too coarse; what is only seen or not does not.', '',
              '| case | wanted error | cells across | dt, s | tolerance | CPU | |', '|---|---|---|---|---|---|---|']
     for name, runs in cases.items():
-        usable = [r for r in runs if r['error'] is not None and r['discretisation'] == 'fitted' and
-                  r['solver'] == 'fast' and r['goal']]
+        usable = adviceRuns(runs)
         steady = bool(runs[0]['steady'])
-        variants = {r['variant'] for r in usable if r['judged']}
+        needed = {(r['variant'], r['quantity']) for r in usable if r['judged'] and not r.get('failure')}
         choices = []
         for key, group in grouped(usable, lambda r: (round(r['cells_across'], 3), None if steady else r['dt'],
                                                      r['tolerance'])).items():
-            if {r['variant'] for r in group} == variants or len(variants) == 0:
+            measured = [r for r in group if r['error'] is not None]
+            if len(measured) == len(group) and {(r['variant'], r['quantity']) for r in group} == needed:
                 choices.append((max(cost(r) for r in group), max(abs(r['error']) for r in group), key))
         for wanted in (0.1, 0.05, 0.02, 0.01, 0.005):
             good = [c for c in choices if c[1] <= wanted]

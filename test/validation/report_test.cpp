@@ -60,5 +60,38 @@ TEST(Report, TellsGoodMissedAndFailedRuns) {
   EXPECT_NE(all.find("| variant | failed: drag is no number | 32 |"), std::string::npos) << all;
 }
 
+// The advice of a report, a line for each.
+std::string adviceOf(const std::vector<CaseRun>& runs) {
+  const std::string report = reportOf(runs);
+  const std::string head = "|---|---|---|---|---|---|---|\n";
+  const auto section = report.find("## Advice");
+  return section == std::string::npos ? report : report.substr(report.find(head, section) + head.size());
+}
+
+TEST(Report, AdvisesByTheLargestErrorOfEveryQuantityThatHasAGoal) {
+  // The coarse run has no goal for its damping, which is far off; a second variant has none at all.
+  CaseRun coarse = runAt(8.0), fine = runAt(16.0), other_coarse = runAt(8.0), other_fine = runAt(16.0);
+  coarse.measurements = {{"frequency", 1.005, 1.0, 0.01}, {"damping", 1.3, 1.0, 0.0}, {"aside", 2.0, 1.0, 0.0}};
+  fine.measurements = {{"frequency", 1.004, 1.0, 0.01}, {"damping", 1.015, 1.0, 0.1}, {"aside", 2.0, 1.0, 0.0}};
+  EXPECT_EQ(adviceOf({coarse, fine}), "| case | 2 % | 16 | 0 | 1e-05 | 2 | CPU s per simulated s |\n");
+  other_coarse.variant = other_fine.variant = "other";
+  other_coarse.measurements = {{"damping", 1.01, 1.0, 0.0}};
+  other_fine.measurements = {{"damping", 1.07, 1.0, 0.0}};
+  EXPECT_EQ(adviceOf({coarse, fine, other_coarse, other_fine}),
+            "| case | 10 % | 16 | 0 | 1e-05 | 2 | CPU s per simulated s |\n");
+  // Numerics with which a variant fails are not advised.
+  other_fine.measurements.clear();
+  other_fine.failure = "not converged";
+  EXPECT_EQ(adviceOf({coarse, fine, other_coarse, other_fine}), "");
+}
+
+TEST(Report, WhatIsOnlySeenOrNotIsNoAccuracy) {
+  CaseRun run = runAt(8.0);
+  run.measurements = {observed("it floats", true)};
+  EXPECT_EQ(adviceOf({run}), "");
+  run.measurements.push_back({"draught", 1.04, 1.0, 0.1});
+  EXPECT_EQ(adviceOf({run}), "| case | 5 % | 8 | 0 | 1e-05 | 2 | CPU s per simulated s |\n");
+}
+
 }  // namespace
 }  // namespace monolith

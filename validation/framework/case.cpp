@@ -20,7 +20,18 @@ Measurement observed(const std::string& phenomenon, bool seen) {
   m.result = seen ? 1.0 : 0.0;
   m.reference = 1.0;
   m.goal = 0.5;
+  m.yes_or_no = true;
   return m;
+}
+
+RunFunction atMost(double bound, const std::string& quantity, const RunFunction& run) {
+  return [=](const Numerics& numerics, Meter& meter) {
+    std::vector<Measurement> out = run(numerics, meter);
+    for (Measurement& m : out) {
+      if (m.quantity == quantity) m.goal = bound;
+    }
+    return out;
+  };
 }
 
 void addSweep(const std::string& variant, const Sweep& sweep, const RunFunction& run, std::vector<Variant>& out) {

@@ -56,6 +56,7 @@ std::string toJson(const Run& run, const Origin& origin) {
     line.add("result", m ? m->result : kNone);
     line.add("error", m ? m->error() : kNone);
     line.add("goal", m && m->goal > 0.0 ? m->goal : kNone);
+    line.addRaw("yes_or_no", m && m->yes_or_no ? "true" : "false");
     line.addRaw("judged", run.judged ? "true" : "false");
     line.add("cells_across", run.numerics.cells_across);
     line.add("dt", run.numerics.dt);

@@ -1,7 +1,8 @@
 #pragma once
-// Runs as JSON, one object a line and measurement. Keys: case, variant, quantity, reference, result, error (relative),
-// goal, judged, cells_across, dt (s), tolerance, solver, discretisation, steady, cpu_s, wall_s, simulated_s, substeps,
-// iterations, commit, machine. A run that failed has one line with "failure" and null for what it did not measure.
+// Runs as JSON, one object a line and measurement. Keys: case, variant, quantity, reference, result, error
+// (relative), goal, yes_or_no, judged, cells_across, dt (s), tolerance, solver, discretisation, steady, cpu_s,
+// wall_s, simulated_s, substeps, iterations, commit, machine. A run that failed has one line with "failure" and null
+// for what it did not measure.
 
 #include <string>
 
