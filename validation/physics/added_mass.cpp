@@ -14,6 +14,7 @@ struct Row {
   double ratio, added_mass;
 };
 constexpr Row kRows[] = {{0.2, 0.5073}, {0.5, 0.62283}};
+const char* const kAcceleration = "initial acceleration, m/s^2";
 
 std::vector<Measurement> run(const Row& row, double density, const Numerics& numerics, Meter& meter) {
   const double cells = 2.0 * std::round(0.5 * numerics.cells_across / row.ratio);
@@ -31,7 +32,7 @@ std::vector<Measurement> run(const Row& row, double density, const Numerics& num
   Simulation simulation(scene);
   meter.step(simulation);
   const double g = -scene.gravity[2];
-  return {{"initial acceleration, m/s^2", simulation.bodyStates()[0].velocity[2] / simulation.time(),
+  return {{kAcceleration, simulation.bodyStates()[0].velocity[2] / simulation.time(),
            g * (1.0 - density) / (density + row.added_mass), row.ratio * cells >= 10.0 ? 0.02 : 0.0}};
 }
 
@@ -40,17 +41,20 @@ std::vector<Variant> variants(Extent extent) {
   std::vector<Variant> out;
   for (const Row& row : kRows) {
     for (const double density : {1e-3, 1e-2, 0.1, 0.5, 2.0, 10.0, 1e3}) {
-      if (!full && (row.ratio != 0.5 || (density != 1e-3 && density != 1e3))) continue;
+      const bool lightest = density == 1e-3;
+      if (!full && !lightest && (row.ratio != 0.5 || density != 1e3)) continue;
       Sweep sweep;
       sweep.base.cells_across = 10.0;
       sweep.base.dt = 1e-3;
-      // Quick: not 10, where the lightest miss their goal of 2 % by a little (2.1 to 2.5 %): the full set shows it.
-      sweep.cells = full ? std::vector<double>{6, 10, 16} : std::vector<double>{6, 16};
+      sweep.cells = full || !lightest ? std::vector<double>{6, 10, 16} : std::vector<double>{6, 16};
       char name[64];
       std::snprintf(name, sizeof name, "diameter %g of the side, density ratio %g", row.ratio, density);
-      addSweep(
-          name, sweep,
-          [&row, density](const Numerics& numerics, Meter& meter) { return run(row, density, numerics, meter); }, out);
+      const RunFunction own = [&row, density](const Numerics& n, Meter& meter) { return run(row, density, n, meter); };
+      if (full || row.ratio == 0.5) addSweep(name, sweep, own, out);
+      if (full || !lightest) continue;
+      // At 10 across the lightest miss their goal of 2 % by a little.
+      sweep.cells = {10};
+      addSweep(name, sweep, atMost(row.ratio == 0.5 ? 0.0215 : 0.0256, kAcceleration, own), out);
     }
   }
   return out;
@@ -64,7 +68,7 @@ Case addedMass() {
   c.title = "initial acceleration of light and heavy spheres in a closed cubic tank";
   c.reference = "potential flow, method of fundamental solutions, 1e-4";
   c.across = "diameter";
-  c.orders = {{"diameter 0.5 of the side, density ratio 0.001", "initial acceleration, m/s^2", false, 1.8}};
+  c.orders = {{"diameter 0.5 of the side, density ratio 0.001", kAcceleration, false, 1.8}};
   c.variants = variants;
   return c;
 }

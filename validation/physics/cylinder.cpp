@@ -16,6 +16,9 @@ struct Row {
   double ratio, drag;
 };
 constexpr Row kRows[] = {{0.2, 1.315618}, {0.3, 2.320363}, {0.5, 7.907423}};
+const char* const kDragFactor = "drag factor";
+const char* const kInnerTorque = "torque of the inner cylinder";
+const char* const kRingTorque = "torque of the ring";
 constexpr int kLayers = 4;       // cells along z
 constexpr double kAspect = 5.0;  // length of the channel over its width; the flow decays by e^-4 a width
 
@@ -32,7 +35,7 @@ std::vector<Measurement> drag(const Row& row, double offset_cells, const Numeric
   Simulation simulation(scene);
   const double force =
       steadyValue(simulation, meter, [&](const StepReport&) { return -simulation.bodyStates()[0].liquid.force[0]; });
-  return {{"drag factor", force / (4.0 * M_PI * depth), row.drag, dragGoal(row.ratio * cells)}};
+  return {{kDragFactor, force / (4.0 * M_PI * depth), row.drag, dragGoal(row.ratio * cells)}};
 }
 
 // Between radius `inner` and the corners of a square of half side `outer`, along z.
@@ -87,8 +90,8 @@ std::vector<Measurement> torque(double ratio, const Numerics& numerics, Meter& m
   const double speed = simulation.liquidVelocity(middle + Eigen::Vector3d(0.5 * (a + b), 0.0, 0.0))[1];
   const double r = 0.5 * (a + b);
   const double goal = dragGoal(2.0 * a * cells);
-  return {{"torque of the inner cylinder", found, expected, goal},
-          {"torque of the ring", simulation.bodyStates()[1].liquid.torque[2], expected, goal},
+  return {{kInnerTorque, found, expected, goal},
+          {kRingTorque, simulation.bodyStates()[1].liquid.torque[2], expected, goal},
           {"speed midway", speed, a * a / (b * b - a * a) * (b * b / r - r), 0.0}};
 }
 
@@ -98,28 +101,35 @@ std::vector<Variant> variants(Extent extent) {
   for (const Row& row : kRows) {
     for (const double offset : {0.0, 0.3}) {
       if (!full && (row.ratio != 0.5 || offset > 0.0)) continue;
-      // Quick: 10 only. At 4 and at 16 across this drag misses its goal (-4.6 %, +0.9 %): the full set shows it.
       Sweep sweep;
       sweep.base.cells_across = 10.0;
       sweep.cells = full ? std::vector<double>{4, 6, 8, 10, 16} : std::vector<double>{10};
       sweep.fractions = full && offset == 0.0;
       char name[64];
       std::snprintf(name, sizeof name, "drag, diameter %g of the width%s", row.ratio, offset > 0.0 ? ", shifted" : "");
-      addSweep(
-          name, sweep, [&row, offset](const Numerics& n, Meter& meter) { return drag(row, offset, n, meter); }, out);
+      const RunFunction run = [&row, offset](const Numerics& n, Meter& meter) { return drag(row, offset, n, meter); };
+      addSweep(name, sweep, run, out);
+      if (full) continue;
+      // Here the goals are missed.
+      for (const auto& [cells, error] : {std::pair(4.0, 0.047), std::pair(16.0, 0.0097)}) {
+        sweep.cells = {cells};
+        addSweep(name, sweep, atMost(error, kDragFactor, run), out);
+      }
     }
   }
   for (const double ratio : {0.25, 0.5, 0.8}) {
-    if (!full && ratio != 0.5) continue;
+    if (!full && ratio == 0.25) continue;
     Sweep sweep;
     sweep.base.cells_across = 10.0;
     sweep.cells = full ? std::vector<double>{4, 6, 8, 10, 16, 32} : std::vector<double>{4, 10};
-    if (ratio == 0.8) sweep.cells = {10, 16, 32, 64};
+    if (ratio == 0.8) sweep.cells = full ? std::vector<double>{10, 16, 32, 64} : std::vector<double>{10};
     sweep.fractions = full;
     char name[64];
     std::snprintf(name, sizeof name, "Taylor-Couette, radii 1:%g", 1.0 / ratio);
-    addSweep(
-        name, sweep, [ratio](const Numerics& n, Meter& meter) { return torque(ratio, n, meter); }, out);
+    RunFunction run = [ratio](const Numerics& n, Meter& meter) { return torque(ratio, n, meter); };
+    // In the narrow gap, 1.3 cells wide, the goal is missed.
+    if (!full && ratio == 0.8) run = atMost(0.095, kInnerTorque, atMost(0.095, kRingTorque, run));
+    addSweep(name, sweep, run, out);
   }
   return out;
 }

@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kGravity = 9.81;
 constexpr double kLength = 1.0;  // m, of the tank
+const char* const kDamping = "damping, 1/s";
+const char* const kLargestError = "largest error of the height within 0.8 s, of the start's";
 
 // Liquid `depth` deep with the surface depth + height cos(k x), as a box for each column of cells; thin and periodic along y.
 Scene waveScene(double depth, double waves, double height, double viscosity, TimeStepping scheme,
@@ -89,7 +91,7 @@ std::vector<Measurement> slosh(double viscosity, TimeStepping scheme, const Nume
   const double damping = 2.0 * viscosity * k * k + s * k / std::sinh(2.0 * kh) + s / kLength * (1.0 - part);
   // The layers on the walls, sqrt(2 nu/omega) thick, must not be thinner than half a cell.
   const bool resolved = std::sqrt(2.0 * viscosity / omega) > 0.5 * kLength / numerics.cells_across;
-  out.push_back({"damping, 1/s", -(n * ty - t * y) / (n * tt - t * t), damping, goals && resolved ? 0.1 : 0.0});
+  out.push_back({kDamping, -(n * ty - t * y) / (n * tt - t * t), damping, goals && resolved ? 0.1 : 0.0});
   return out;
 }
 
@@ -144,13 +146,18 @@ std::vector<Measurement> deepWave(double viscosity, TimeStepping scheme, const N
     const double exact = prosperetti(viscosity * k * k, std::sqrt(kGravity * k), r.time);
     worst = std::max(worst, std::abs(amplitude(simulation, k) / start - exact));
   });
-  return {{"largest error of the height within 0.8 s, of the start's", worst, 0.0,
-           scheme == TimeStepping::kBdf2 ? 0.02 : 0.0, 1.0}};
+  return {{kLargestError, worst, 0.0, scheme == TimeStepping::kBdf2 ? 0.02 : 0.0, 1.0}};
 }
 
 using Wave = std::vector<Measurement> (*)(double, TimeStepping, const Numerics&, Meter&);
 
-std::vector<Variant> variants(Wave wave, const std::vector<double>& viscosities, double quick_cells, Extent extent) {
+// A run of the quick subset that misses its goal, and by how much it may.
+struct Missed {
+  double cells_across, error;
+};
+
+std::vector<Variant> variants(Wave wave, const std::vector<double>& viscosities, double quick_cells,
+                              const std::vector<Missed>& missed, const char* quantity, Extent extent) {
   const bool full = extent == Extent::kFull;
   std::vector<Variant> out;
   for (const double viscosity : viscosities) {
@@ -166,12 +173,15 @@ std::vector<Variant> variants(Wave wave, const std::vector<double>& viscosities,
       char name[64];
       std::snprintf(name, sizeof name, "viscosity %g m^2/s, %s", viscosity,
                     scheme == TimeStepping::kBdf2 ? "bdf2" : "backward Euler");
-      addSweep(
-          name, sweep,
-          [wave, viscosity, scheme](const Numerics& numerics, Meter& meter) {
-            return wave(viscosity, scheme, numerics, meter);
-          },
-          out);
+      const RunFunction run = [wave, viscosity, scheme](const Numerics& numerics, Meter& meter) {
+        return wave(viscosity, scheme, numerics, meter);
+      };
+      addSweep(name, sweep, run, out);
+      if (full) continue;
+      for (const Missed& m : missed) {
+        sweep.cells = {m.cells_across};
+        addSweep(name, sweep, atMost(m.error, quantity, run), out);
+      }
     }
   }
   return out;
@@ -185,7 +195,9 @@ Case sloshing() {
   c.title = "frequency and damping of the first mode of a tank, depth half its length";
   c.reference = "linear waves with boundary layers";
   c.across = "length of the tank";
-  c.variants = [](Extent extent) { return variants(slosh, {0.0, 0.0001, 0.001}, 32.0, extent); };
+  c.variants = [](Extent extent) {
+    return variants(slosh, {0.0, 0.0001, 0.001}, 32.0, {{64.0, 0.173}}, kDamping, extent);
+  };
   return c;
 }
 
@@ -195,8 +207,9 @@ Case viscousWave() {
   c.title = "a standing wave on deep viscous liquid";
   c.reference = "Prosperetti 1981, exact for small heights";
   c.across = "wavelength";
-  // Quick: not 32 cells, where it misses its goal of 2 % (3.3 %): the full set shows it.
-  c.variants = [](Extent extent) { return variants(deepWave, {0.001, 0.01}, 64.0, extent); };
+  c.variants = [](Extent extent) {
+    return variants(deepWave, {0.001, 0.01}, 64.0, {{16.0, 0.089}, {32.0, 0.034}}, kLargestError, extent);
+  };
   return c;
 }
 
