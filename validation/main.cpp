@@ -13,17 +13,18 @@ int main(int argc, char** argv) {
       {"blocks", runBlocks},
       {"pace", runPace},
   };
-  if (argc < 2) {
-    std::printf("usage: monolith_cases CASE...\ncases:");
+  const std::string first = argc < 2 ? "--help" : argv[1];
+  if (first == "--help" || first == "-h") {
+    std::printf("usage: cases [CASE ...]\ncases:");
     for (const auto& entry : cases) std::printf(" %s", entry.first.c_str());
     std::printf("\n");
-    return 2;
+    return 0;
   }
   bool met = true;
   for (int i = 1; i < argc; ++i) {
     const auto found = cases.find(argv[i]);
     if (found == cases.end()) {
-      std::fprintf(stderr, "unknown case '%s'; call without arguments for a list\n", argv[i]);
+      std::fprintf(stderr, "unknown case '%s'; without a name they are listed\n", argv[i]);
       return 2;
     }
     try {

@@ -100,7 +100,7 @@ TEST(Runner, FindsTheOrder) {
   }
 }
 
-TEST(Runner, OverridesMergeVariantsAndAreNotJudged) {
+TEST(Runner, OverridesMergeVariantsAndGoalsCountOnlyWhereNothingChanged) {
   Overrides overrides;
   overrides.cells_across = 4.0;
   const std::vector<CaseRun> runs = runsOf(syntheticCase(2.0), overrides);
