@@ -21,11 +21,12 @@ struct CouplingScene {
   BodyRows rows;
   double viscous_number = 0.0;
 
-  // seed decides sizes, poses, fill and periodicity; bodies may touch, overlap and stick out of the liquid.
-  CouplingScene(unsigned seed, double number) : viscous_number(number) {
+  // seed decides sizes, poses, fill and periodicity; bodies may touch, overlap and stick out of the liquid. `endless`:
+  // full and periodic along all axes, without walls.
+  CouplingScene(unsigned seed, double number, bool endless = false) : viscous_number(number) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
-    grid.lattice = Lattice({10, 9, 12}, {seed % 3 == 1, false, seed % 5 == 2});
+    grid.lattice = Lattice({10, 9, 12}, {endless || seed % 3 == 1, endless, endless || seed % 5 == 2});
     grid.h = 0.1;
     grid.origin = Eigen::Vector3d(-0.3, 0.2, 0.1);
     for (int b = 0; b < 3; ++b) {
@@ -48,7 +49,7 @@ struct CouplingScene {
     SolidSampler(grid).sample(bodies, solids);
     if (number >= 0.05) attachStickingLiquid(grid, solids, sticking);
     const Lattice& l = grid.lattice;
-    const double fill = seed % 2 ? 100.0 : 5.0 + 4.0 * unit(random);
+    const double fill = endless || seed % 2 ? 100.0 : 5.0 + 4.0 * unit(random);
     liquid.assign(l.size, 0.0);
     for (int k = 0; k < l.n[2]; ++k) {
       for (int j = 0; j < l.n[1]; ++j) {

@@ -28,7 +28,9 @@ struct StackStep {
   ContactRows rows;
   std::vector<Contact> contacts;
 
-  StackStep(double viscosity, double fill, double friction, double density_scale = 1.0) : problem(makeGrid()) {
+  StackStep(double viscosity, double fill, double friction, double density_scale,
+            Discretisation discretisation = Discretisation::kFitted)
+      : problem(makeGrid(), discretisation) {
     grid = makeGrid();
     walls.inside = Eigen::AlignedBox3d(Eigen::Vector3d::Zero(), Eigen::Vector3d(0.8, 0.8, 1.0));
     const double h = grid.h;
@@ -120,13 +122,14 @@ void expectSame(const StackStep& step, const Answer& a, const Answer& b, double 
 
 struct Parameters {
   double viscosity, fill, friction, density_scale;
+  Discretisation discretisation = Discretisation::kFitted;
 };
 
 class StepSolvers : public testing::TestWithParam<Parameters> {};
 
 TEST_P(StepSolvers, Agree) {
   const Parameters p = GetParam();
-  StackStep step(p.viscosity, p.fill, p.friction, p.density_scale);
+  StackStep step(p.viscosity, p.fill, p.friction, p.density_scale, p.discretisation);
   ASSERT_GE(step.contacts.size(), 8u);
   DirectSolver direct;
   FastSolver fast;
@@ -139,7 +142,7 @@ TEST_P(StepSolvers, Agree) {
 
 TEST_P(StepSolvers, ContactsObeyTheirLaw) {
   const Parameters p = GetParam();
-  StackStep step(p.viscosity, p.fill, p.friction, p.density_scale);
+  StackStep step(p.viscosity, p.fill, p.friction, p.density_scale, p.discretisation);
   DirectSolver direct;
   const Answer a = answer(step, direct, CouplingName::kUnified, 1e-10);
   const Eigen::Index m = step.rows.count();
@@ -167,7 +170,12 @@ INSTANTIATE_TEST_SUITE_P(Scenes, StepSolvers,
                          testing::Values(Parameters{0.0, 0.0, 0.3, 1.0}, Parameters{0.0, 0.55, 0.0, 1.0},
                                          Parameters{0.0, 0.55, 0.2, 1.0}, Parameters{20.0, 0.55, 0.0, 1.0},
                                          Parameters{20.0, 0.55, 0.2, 1.0}, Parameters{20.0, 0.55, 1.0, 1.0},
-                                         Parameters{20.0, 1.5, 0.2, 1.0}));
+                                         Parameters{20.0, 1.5, 0.2, 1.0},
+                                         // Light and heavy for the liquid; and by the paper's discretisation.
+                                         Parameters{0.0, 0.55, 0.2, 0.01}, Parameters{20.0, 1.5, 0.2, 0.1},
+                                         Parameters{20.0, 0.55, 0.2, 100.0},
+                                         Parameters{0.0, 0.55, 0.2, 1.0, Discretisation::kFractions},
+                                         Parameters{20.0, 0.55, 0.2, 1.0, Discretisation::kFractions}));
 
 }  // namespace
 }  // namespace monolith
