@@ -1,5 +1,7 @@
 #pragma once
-// The bodies' columns of the step, row by row: J_p and J_s of DESIGN 1.2.
+// The bodies' columns of the step, row by row: J_p = -Q W_S^u G from differences of neighbouring fractions, so that
+// what lies deep inside a body cancels (supplement of the paper that step_problem.h names, section 3), and J_s
+// likewise.
 
 #include <array>
 #include <vector>

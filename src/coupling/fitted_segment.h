@@ -1,6 +1,6 @@
 #pragma once
-// One velocity difference of the fitted gradient (DESIGN 1.4): along the segment from face A to face B of one velocity
-// component.
+// One velocity difference of the fitted gradient (stokes_coefficients.h): along the segment from face A to face B of
+// one velocity component.
 
 #include <algorithm>
 #include <cmath>

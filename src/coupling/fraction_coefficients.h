@@ -1,5 +1,5 @@
 #pragma once
-// The discretisation `fractions`, the paper's own (DESIGN 1.1, 1.2): all boundaries by volume fractions, none fitted.
+// The discretisation `fractions`, that of the paper (step_problem.h): all boundaries by volume fractions, none fitted.
 //
 // With the combined velocity of a face, uc = W_F u + sum_i W_Si Q_i^T v_i, a step minimises
 //   1/(2 dt) rho |u - u*|^2 weighted W_F^u W_L^u + eta |D uc|^2 weighted W_L^s W_F^s,

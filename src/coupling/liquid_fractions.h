@@ -1,7 +1,8 @@
 #pragma once
-// W_L of DESIGN 1.1: which part of the control volumes of pressures (cells), velocities (faces) and stresses (cells and
-// edges) is liquid, solids ignored, from the level set at cell centres. Each octant of a cell is cut by the plane of the
-// trilinear level set at its centre; control volumes are sums of octants, so a flat surface is exact at any height.
+// W_L^p, W_L^u and W_L^s: which part of the control volumes of pressures (cells), velocities (faces) and stresses
+// (cells and edges) is liquid, solids ignored, from the level set at cell centres. Each octant of a cell is cut by
+// the plane of the trilinear level set at its centre; control volumes are sums of octants, so a flat surface is exact
+// at any height.
 
 #include <array>
 #include <vector>

@@ -1,6 +1,6 @@
 #pragma once
 // Connected regions of cells with pressure. A region without a free surface is sealed: its pressure is free up to a
-// constant, and its solids must not change its volume (DESIGN 1.5).
+// constant, and its solids must not change its volume.
 
 #include <cstdint>
 #include <numeric>

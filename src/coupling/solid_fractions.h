@@ -1,7 +1,8 @@
 #pragma once
-// Where the solids are on the grid (DESIGN 1.1): for each face the part of its control volume, a cube of width h about
-// its centre, that each body, the wall and the liquid's side take; sum_i W_Si + W_wall + W_F = 1 exactly, also where
-// bodies touch or overlap. And the signed distance at face centres, which the fitted boundary (DESIGN 1.4) needs.
+// Where the solids are on the grid, W_F^u and W_Si^u: for each face the part of its control volume, a cube of width h
+// about its centre, that each body, the wall and the liquid's side take; sum_i W_Si + W_wall + W_F = 1 exactly, also
+// where bodies touch or overlap. And the signed distance at face centres, which the fitted boundary
+// (stokes_coefficients.h) needs.
 //
 // Bodies are sampled by quarter cells, each cut by a plane, so W is exact for planes and of second order for curved
 // surfaces, and it changes smoothly when a body moves through the grid.

@@ -1,6 +1,13 @@
 #pragma once
-// One step as a linear system, whichever way it is solved: liquid velocity U, twists v of the free bodies, pressure p
-// (DESIGN 1.2 with the stress eliminated),
+// One step of T. Takahashi, C. Batty, 'Monolith: A Monolithic Pressure-Viscosity-Contact Solver for Strong Two-Way
+// Rigid-Rigid Rigid-Fluid Coupling', ACM TOG 39(6), 2020 ("the paper" wherever one is named without its own title):
+//
+//   min over u, v   rho h^3/(2 dt) |u - u*|^2 + 1/(2 dt) (v - v*)^T M (v - v*) + h^3 eta |D uc|^2
+//   subject to      G^T uc = 0,   J v >= -gap/dt                   uc: combined velocity of liquid and bodies
+//
+// (norms over the liquid's part of the control volumes) as a linear system, whichever way it is solved. The paper
+// eliminates the velocities (stress_system.h), here it is the stress: liquid velocity U, twists v of the free bodies,
+// pressure p,
 //
 //   [ A_uu  A_uv  -C_u^T ] [ U  ]   [ m U*                  ]
 //   [ A_vu  A_vv  -C_v^T ] [ v  ] = [ M v* + J^T r          ]     A = mass + D^T W D over (U, v)

@@ -1,7 +1,7 @@
 #pragma once
-// What the solvers of a step have in common (DESIGN 2): `fast`, `direct` and `reference` answer the same two questions.
-// x holds the twists of all bodies; those that are not free are left alone and count as zero (their motion is in the
-// right side already).
+// What the solvers of a step (step_problem.h) have in common: `fast`, `direct` and `reference` answer the same two
+// questions. x holds the twists of all bodies; those that are not free are left alone and count as zero (their motion
+// is in the right side already).
 
 #include <string>
 

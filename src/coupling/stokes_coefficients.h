@@ -1,5 +1,5 @@
 #pragma once
-// From geometry to the coefficients of one step (DESIGN 1.2 and 1.4). Everything is made dimensionless: momentum rows
+// From geometry to the coefficients of one step (step_problem.h). Everything is made dimensionless: momentum rows
 // are multiplied by dt/(rho h^3), pressure is p^ = dt p/(rho h), and viscosity enters as the viscous number
 // N = eta dt/(rho h^2).
 //

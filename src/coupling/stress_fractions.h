@@ -1,7 +1,7 @@
 #pragma once
-// W^s of DESIGN 1.1: how the control volumes of stress samples, cubes of width h about cell centres and about the middles of
-// edges, are shared among bodies, wall and the liquid's side. sum_i W_Si + W_wall + W_F = 1, also where bodies touch or
-// overlap and where an edge lies in a wall, of whose cube a half or three quarters are the wall's.
+// W_F^s and W_Si^s: how the control volumes of stress samples, cubes of width h about cell centres and about the
+// middles of edges, are shared among bodies, wall and the liquid's side. sum_i W_Si + W_wall + W_F = 1, also where
+// bodies touch or overlap and where an edge lies in a wall, of whose cube a half or three quarters are the wall's.
 
 #include <array>
 #include <vector>

@@ -1,5 +1,6 @@
 #pragma once
-// The paper's own form of a step (DESIGN 1.2): unknowns x = (s, p), stress and pressure, with the velocities eliminated,
+// A step in the form of the paper that step_problem.h names: unknowns x = (s, p), stress and pressure, with the
+// velocities eliminated,
 //
 //   M U   + G^T x = f_u          G = (D; -C)      per face
 //   M_S v + J^T x = f_v          J = (J_s; -C_v)  per free body

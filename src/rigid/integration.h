@@ -11,7 +11,7 @@ struct Wrench {
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  // N m, in W, about the centre of mass
 };
 
-// v* of DESIGN 1.2: the twist after gravity, gyroscopic terms and a wrench over dt, liquid and contact left
+// v*, from which a step starts: the twist after gravity, gyroscopic terms and a wrench over dt, liquid and contact left
 // out. Implicit midpoint in the gyroscopic term: energy is kept when torque-free, at any spin. The twist of a body
 // that is not free comes back unchanged.
 Vector6d freeTwist(const RigidBody& body, const Eigen::Vector3d& gravity, const Wrench& wrench, double dt);

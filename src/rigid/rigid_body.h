@@ -1,6 +1,6 @@
 #pragma once
 // State and mass properties of one rigid body at a moment. World frame W; the twist is that of the centre of
-// mass Bcm, in world axes: (linear m/s, angular rad/s), as in DESIGN's v in R^6.
+// mass Bcm, in world axes: v = (linear m/s, angular rad/s) in R^6.
 
 #include <Eigen/Geometry>
 #include <memory>

@@ -86,10 +86,11 @@ struct BodyDescription {
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  // initial, in W, rad/s
 };
 
-// How a step is solved (DESIGN 2) and contact coupled; the answer is the same.
+// How a step is solved (coupling/step_solver.h) and contact coupled; the answer is the same.
 enum class SolverName { kFast, kDirect, kReference };
 enum class CouplingName { kUnified, kIterative };
-// How solids bound the liquid (DESIGN 1.4): fitted gradients, or the paper's volume fractions.
+// How solids bound the liquid: fitted gradients (coupling/stokes_coefficients.h), or the volume fractions of the paper
+// that coupling/step_problem.h names (coupling/fraction_coefficients.h).
 enum class Discretisation { kFitted, kFractions };
 
 // How a step approximates time (simulation/time_stepping.h): first or second order, the same solve.

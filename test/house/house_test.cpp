@@ -92,7 +92,8 @@ TEST(Rules, LongFileIsFound) {
 }
 
 TEST(Rules, ForbiddenWordIsFound) {
-  for (const std::string& word : {std::string("TO") + "DO", std::string("FIX") + "ME", std::string("XX") + "X"}) {
+  for (const std::string& word : {std::string("TO") + "DO", std::string("FIX") + "ME", std::string("XX") + "X",
+                                  std::string("DES") + "IGN"}) {
     EXPECT_EQ(findForbiddenWords({{"a.h", "int x;\n// " + word + ": more"}}).size(), 1u) << word;
   }
   for (const std::string folder : {"home", "root", "work", "Users"}) {
@@ -101,7 +102,7 @@ TEST(Rules, ForbiddenWordIsFound) {
     EXPECT_EQ(findForbiddenWords({{"a.yaml", path}}).size(), 1u) << path;
   }
   EXPECT_EQ(joined(findForbiddenWords({{"a.h",
-                                        "src/work/a.h, body/root/x, XXXXXX, a/ho"
+                                        "src/work/a.h, body/root/x, XXXXXX, DESIGNED, design, a/ho"
                                         "me/b"}})),
             "");
 }

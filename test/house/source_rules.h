@@ -200,10 +200,12 @@ inline Violations findLongFiles(const Files& files) {
   return violations;
 }
 
-// Marks of unfinished work, and absolute paths that hold on one machine only.
+// Marks of unfinished work, references to a document that is not part of the repository, and absolute paths that hold
+// on one machine only.
 inline Violations findForbiddenWords(const Files& files) {
   // Put together from pieces, so that this file passes too.
   static const std::regex unfinished(std::string("\\b(TO") + "DO|FIX" + "ME|XX" + "X|HA" + "CK)\\b");
+  static const std::regex elsewhere(std::string("\\bDES") + "IGN\\b");
   static const std::regex machine_path(std::string("(^|[^A-Za-z0-9_.~$}>-])/(ho") + "me|ro" + "ot|wo" + "rk|Us" +
                                        "ers)/[A-Za-z0-9_.-]");
   Violations violations;
@@ -214,6 +216,9 @@ inline Violations findForbiddenWords(const Files& files) {
       std::smatch match;
       if (std::regex_search(line, match, unfinished)) {
         violations.push_back(located(path, number, "unfinished: " + match.str()));
+      }
+      if (std::regex_search(line, match, elsewhere)) {
+        violations.push_back(located(path, number, "a document that is not here: " + match.str()));
       }
       if (std::regex_search(line, match, machine_path)) {
         violations.push_back(located(path, number, "a path of one machine: " + match.str()));

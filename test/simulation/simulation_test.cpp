@@ -123,7 +123,7 @@ TEST(Simulation, TheDropSceneFallsAndSplashesWithFractions) {
 }
 
 TEST(Simulation, LightAndHeavySpheresStartWithTheirAddedMass) {
-  // Cube cavity, a/half-side = 0.5: added-mass coefficient 0.62283 (computed; shared reference data of the project).
+  // Cube cavity, a/half-side = 0.5: added-mass coefficient by the method of fundamental solutions, 1e-4.
   constexpr double kAddedMass = 0.62283;
   for (const double ratio : {1e-3, 0.5, 10.0, 1e3}) {
     Scene scene = tank(0.16, 0.0);
