@@ -10,6 +10,9 @@
 namespace monolith {
 namespace {
 
+constexpr std::size_t kMostShown = 300;  // bytes of a value in a message
+constexpr int kMostDepth = 4;            // of collections in it
+
 std::string expectedText(Range range) {
   switch (range) {
     case Range::kPositive: return "a finite number > 0";
@@ -23,6 +26,34 @@ bool within(double value, Range range) {
   if (!std::isfinite(value)) return false;
   if (range == Range::kPositive) return value > 0.0;
   return range == Range::kFinite || value >= 0.0;
+}
+
+// A collection may be an alias for one that it is in: what it shows has to end.
+void show(const YAML::Node& node, int depth, std::string& text) {
+  if (!node.IsDefined() || node.IsNull()) {
+    text += "(nothing)";
+  } else if (node.IsScalar()) {
+    text += node.Scalar();
+  } else if (depth > kMostDepth) {
+    text += "...";
+  } else {
+    const bool is_list = node.IsSequence();
+    text += is_list ? "[" : "{";
+    bool first = true;
+    for (const auto& entry : node) {
+      if (text.size() > kMostShown) return;
+      if (!first) text += ", ";
+      first = false;
+      if (is_list) {
+        show(entry, depth + 1, text);
+      } else {
+        show(entry.first, depth + 1, text);
+        text += ": ";
+        show(entry.second, depth + 1, text);
+      }
+    }
+    text += is_list ? "]" : "}";
+  }
 }
 
 bool toNumber(const YAML::Node& node, double& out) {
@@ -45,16 +76,12 @@ void Violations::throwIfAny() const {
 
 std::string shownValue(const YAML::Node& node) {
   if (!node.IsDefined() || node.IsNull()) return "(nothing)";
-  if (node.IsScalar()) return node.Scalar();
   std::string text;
-  if (node.IsSequence()) {
-    for (const YAML::Node& entry : node) text += (text.empty() ? "" : ", ") + shownValue(entry);
-    return "[" + text + "]";
-  }
-  for (const auto& entry : node) {
-    text += (text.empty() ? "" : ", ") + shownValue(entry.first) + ": " + shownValue(entry.second);
-  }
-  return "{" + text + "}";
+  show(node, 0, text);
+  if (text.size() <= kMostShown) return text;
+  std::size_t end = kMostShown;
+  while (end > 0 && (text[end] & 0xC0) == 0x80) --end;  // within a character of UTF-8
+  return text.substr(0, end) + "...";
 }
 
 YamlMap::YamlMap(const YAML::Node& node, const std::string& path, const std::vector<std::string>& known,

@@ -26,7 +26,7 @@ class Violations {
 // What a number must fulfil.
 enum class Range { kFinite, kPositive, kNotNegative };
 
-// A value as it stands in the file, on one line.
+// A value as it stands in the file, on one line; of a long or a deep one the beginning.
 std::string shownValue(const YAML::Node& node);
 
 class YamlMap {

@@ -221,6 +221,29 @@ TEST_F(SceneFile, AllViolationsAreReportedAtOnce) {
   }
 }
 
+TEST_F(SceneFile, ValuesThatContainThemselvesOrAreEndlessAreShownInPart) {
+  expectError(kTank + "name: &a [*a]\n", {"scene.yaml:2: name: value [[[", "...", "expected a text"});
+  expectError("tank: &t {size: *t, cell_width: 0.1}\n", {"tank.size: value {size: {size: ", "expected a list of 3"});
+  expectError(kTank + "bodies: &b\n  - *b\n", {"bodies[0]: value [", "expected a map"});
+  expectError(kTank + "? &k [*k]\n: 1\n", {"unknown key"});
+  // Ten of ten of ten...: 10^9 entries.
+  std::string yaml = "&l0 [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]";
+  for (int level = 1; level < 9; ++level) {
+    const std::string alias = "*l" + std::to_string(level - 1);
+    yaml = "&l" + std::to_string(level) + " [" + yaml;
+    for (int i = 1; i < 10; ++i) yaml += ", " + alias;
+    yaml += "]";
+  }
+  EXPECT_LT(errorOf(kTank + "gravity: " + yaml + "\n").size(), 1000u);
+  const std::string error = errorOf(kTank + "gravity: " + std::string(1000, 'x') + "\n");
+  EXPECT_NE(error.find("xxx...: expected"), std::string::npos) << error;
+  EXPECT_LT(error.size(), 500u);
+  // Cut between characters: these have two bytes.
+  std::string umlauts = "x";
+  for (int i = 0; i < 500; ++i) umlauts += "\xc3\xa4";
+  EXPECT_NE(errorOf(kTank + "gravity: " + umlauts + "\n").find("\xc3\xa4...: expected"), std::string::npos);
+}
+
 TEST_F(SceneFile, BodyThroughAWallIsNamedWithAxisAndExcess) {
   const auto at = [](const std::string& position) {
     return kTank + "bodies: [{name: ball, urdf: ball.urdf, position: " + position + "}]\n";
