@@ -9,15 +9,20 @@ Interrupted: 130. A launch file that cannot be loaded: 1. A node that a signal e
 import sys
 import time
 
+import rosgraph.names
 import roslaunch
 import roslaunch.config
 import roslaunch.parent
 from roslaunch.rlutil import get_or_generate_uuid
 
 
+def fullName(node):
+    return rosgraph.names.ns_join(node.namespace, node.name)
+
+
 def nodeName(process_name):
-    """Processes are called NODE-NUMBER."""
-    return process_name.rsplit('-', 1)[0]
+    """Processes are called NODE-NUMBER, by the full name but for its first slash."""
+    return '/' + process_name.rsplit('-', 1)[0]
 
 
 def superviseRun(parent, required):
@@ -41,7 +46,7 @@ def main(port, launch_file, *arguments):
     roslaunch.configure_logging(run_id)
     try:
         config = roslaunch.config.load_config_default([(launch_file, list(arguments))], port)
-        required = {node.name for node in config.nodes if node.required}
+        required = {fullName(node) for node in config.nodes if node.required}
         # Ended by superviseRun(): roslaunch's own way announces a successful end in red.
         for node in config.nodes:
             node.required = False

@@ -17,6 +17,7 @@ import rostest
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from tank_client import NODE, allFinite, numbers
 
+BAG = "run 1, 'demo'.bag"
 DURATION_SEC = 1.0
 STEP_SEC = 0.04
 CELL = 0.01
@@ -34,11 +35,11 @@ class BagTest(unittest.TestCase):
         # A path relative to the caller's directory, as users give it.
         cls.launched = subprocess.run(
             ['roslaunch', '--wait', 'monolith_tank', 'tank.launch', 'scene:=drop', 'duration:=%g' % DURATION_SEC,
-             'paced:=false', 'progress:=true', 'bag:=run.bag'],
+             'paced:=false', 'progress:=true', 'bag:=' + BAG],
             cwd=cls.folder, env=dict(os.environ, PWD=cls.folder), stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
             universal_newlines=True, timeout=120, check=False)
         cls.topics = {}
-        path = os.path.join(cls.folder, 'run.bag')
+        path = os.path.join(cls.folder, BAG)
         if os.path.exists(path):
             with rosbag.Bag(path) as bag:
                 for topic, message, _ in bag.read_messages():
@@ -59,7 +60,7 @@ class BagTest(unittest.TestCase):
 
     def testLaunchEndsAndClosesTheBag(self):
         self.assertEqual(self.launched.returncode, 0, self.launched.stdout)
-        self.assertEqual(os.listdir(self.folder), ['run.bag'], self.launched.stdout)
+        self.assertEqual(os.listdir(self.folder), [BAG], self.launched.stdout)
         self.assertIn('100 %', self.launched.stdout)
 
     def testTopics(self):

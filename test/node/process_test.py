@@ -4,6 +4,7 @@
 import glob
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -11,6 +12,7 @@ import tempfile
 import time
 import unittest
 
+import rosbag
 import roslaunch.config
 import roslib.packages
 import rospkg
@@ -194,6 +196,21 @@ class ProcessTest(unittest.TestCase):
             rospy.set_param('/run_%d' % (ProcessTest.runs + 1), parameters)
             code, output = self.finish()
             self.assertEqual(code, 0, output)
+
+    def testLaunchInANamespaceEndsAndRecords(self):
+        folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, folder)
+        bag = os.path.join(folder, 'run.bag')
+        environment = dict(os.environ, ROS_NAMESPACE='/harbour/basin')
+        run = subprocess.run([sys.executable, PACKAGE + '/launch/supervise.py', '-', PACKAGE + '/launch/tank.launch',
+                              'scene:=' + SMALL, 'duration:=0.2', 'paced:=false', 'bag:=' + bag], env=environment,
+                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True, timeout=60,
+                             check=False)
+        self.assertEqual(run.returncode, 0, run.stdout)
+        self.assertNotIn('nobody subscribed', run.stdout)
+        with rosbag.Bag(bag) as recorded:
+            topics = recorded.get_type_and_topic_info().topics
+        self.assertIn('/harbour/basin/monolith_tank/body_states', topics)
 
     def testLaunchFilesLoadAndExplainTheirArguments(self):
         files = glob.glob(PACKAGE + '/launch/*.launch')
