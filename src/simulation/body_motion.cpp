@@ -1,6 +1,8 @@
 #include "simulation/body_motion.h"
 
 #include <algorithm>
+#include <limits>
+#include <sstream>
 
 #include "rigid/rotation.h"
 
@@ -142,6 +144,72 @@ void finishSecondOrder(const BodyPlan& plan, const std::vector<Contact>& contact
       finishMotion(plan.motion[b], twists[b], dt, body);
     }
   }
+}
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// How far a body reaches out of a wall, m, and which; negative: it is inside. No more exact than needed to tell
+// whether it is beyond `enough`.
+double reachOut(const RigidBody& body, const TankWalls& walls, double enough, std::string& wall) {
+  const auto deepest = [&](const Eigen::AlignedBox3d& box) {
+    double depth = -kInfinity;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (walls.periodic[axis]) continue;
+      const double below = walls.inside.min()[axis] - box.min()[axis];
+      const double above = box.max()[axis] - walls.inside.max()[axis];
+      if (std::max(below, above) <= depth) continue;
+      depth = std::max(below, above);
+      wall = std::string(below > above ? "-" : "+") + "xyz"[axis];
+    }
+    return depth;
+  };
+  // The box around the body however it is turned nearly always tells.
+  const Eigen::AlignedBox3d own = body.distance->bounds().translated(-body.p_BBcm);
+  const Vector3d reach = Vector3d::Constant(own.min().cwiseAbs().cwiseMax(own.max().cwiseAbs()).norm());
+  const double around = deepest(Eigen::AlignedBox3d(body.p_WBcm - reach, body.p_WBcm + reach));
+  if (around <= enough) return around;
+  Eigen::AlignedBox3d box;
+  for (const Shape& shape : body.shapes) box.extend(bounds(shape, body.pose()));
+  return deepest(box);
+}
+
+std::string intrusion(const std::string& what, double depth, double allowed) {
+  std::ostringstream text;
+  text << what << " by " << depth << " m: expected at most half a cell, " << allowed << " m; is what acts on it too strong for the time step, or has it no room?";
+  return text.str();
+}
+
+}  // namespace
+
+std::string describeIntrusion(const BodyPlan& plan, const std::vector<Contact>& contacts, const TankWalls& walls,
+                              const std::vector<Vector6d>& twists, double dt, double allowed,
+                              const std::vector<RigidBody>& before, const std::vector<RigidBody>& after) {
+  double pressed = 0.0;
+  for (std::size_t b = 0; b < after.size(); ++b) {
+    if (after[b].motion != BodyMotion::kPrescribed) continue;
+    pressed = std::max(pressed, 2.0 * after[b].distanceFrom(before[b].pose()));
+  }
+  for (std::size_t b = 0; b < after.size(); ++b) {
+    if (after[b].motion != BodyMotion::kFree) continue;
+    std::string wall, wall_before;
+    const double depth = reachOut(after[b], walls, allowed, wall);
+    if (depth <= allowed || depth <= pressed + reachOut(before[b], walls, -kInfinity, wall_before)) continue;
+    return intrusion("body '" + after[b].name + "' would stick out of the tank's wall " + wall, depth, allowed);
+  }
+  const auto velocity = [&](int body, const Vector3d& point) -> Vector3d {
+    return twists[body].head<3>() + twists[body].tail<3>().cross(point - plan.bodies[body].p_WBcm);
+  };
+  for (const Contact& c : contacts) {
+    if (c.body_b == Contact::kWall) continue;
+    const double closes = -dt * (velocity(c.body_a, c.point) - velocity(c.body_b, c.point)).dot(c.normal);
+    const double depth = closes - c.gap;
+    if (depth <= allowed || closes <= pressed) continue;
+    return intrusion("bodies '" + after[c.body_a].name + "' and '" + after[c.body_b].name + "' would overlap", depth,
+                     allowed);
+  }
+  return "";
 }
 
 }  // namespace monolith

@@ -1,6 +1,7 @@
 #pragma once
 // What a step does to the bodies before and after its solve (simulation/time_stepping.h).
 
+#include <string>
 #include <vector>
 
 #include "rigid/contact.h"
@@ -45,5 +46,13 @@ void finishEuler(const std::vector<Vector6d>& twists, double dt, std::vector<Rig
 // it.
 void finishSecondOrder(const BodyPlan& plan, const std::vector<Contact>& contacts, bool rebound,
                        const std::vector<Vector6d>& twists, double dt, std::vector<RigidBody>& bodies);
+
+// Names what the solve's tolerance let through in a step of length dt, by how much and what was expected: a free body
+// that is out of a wall after it, or two that it brought into one another along one of the contacts, deeper than
+// `allowed` (m) and deeper than before by more than prescribed bodies, which nothing stops, press it. Empty if there is
+// none. Where speeds are absurd, a residual that is small beside them still is a long way.
+std::string describeIntrusion(const BodyPlan& plan, const std::vector<Contact>& contacts, const TankWalls& walls,
+                              const std::vector<Vector6d>& twists, double dt, double allowed,
+                              const std::vector<RigidBody>& before, const std::vector<RigidBody>& after);
 
 }  // namespace monolith

@@ -211,6 +211,13 @@ void Simulation::setBodyState(int body, const Eigen::Isometry3d& X_WB, const Eig
   moved.p_WBcm = X_WB.translation() + moved.q_WB * moved.p_BBcm;
   moved.twist.head<3>() = velocity + angular_velocity.cross(moved.p_WBcm - X_WB.translation());
   moved.twist.tail<3>() = angular_velocity;
+  if (!moved.p_WBcm.allFinite() || !moved.twist.allFinite()) {
+    std::ostringstream text;
+    const Eigen::IOFormat row(6, Eigen::DontAlignCols, ", ", ", ", "", "", "[", "]");
+    text << "state of '" << name << "': centre of mass at " << moved.p_WBcm.transpose().format(row)
+         << " m, its velocity " << moved.twist.head<3>().transpose().format(row) << " m/s: expected finite numbers";
+    throw std::invalid_argument(text.str());
+  }
   const std::string overlaps = describeOverlaps(bodies, m.walls, kOverlapTolerance * m.grid.h, body);
   if (!overlaps.empty()) {
     throw std::invalid_argument("state of '" + name +

@@ -13,6 +13,7 @@ namespace {
 // The first solve starts from nothing that it could correct later.
 constexpr double kFirstTolerance = 1e-4;
 constexpr double kClosingTolerance = 1e-3;  // of a cell: a gap that closes by less within a step is no impact
+constexpr double kMostIntrusion = 0.5;      // of a cell, that bodies may come into walls or each other
 // After the step of an impact one of backward Euler, for the next to continue.
 constexpr int kStepsAfterImpact = 1;
 constexpr double kRoundOff = 1e-6;  // of a length of sub-steps that just fits
@@ -220,6 +221,7 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
     for (const Contact& contact : contacts) step.penetration = std::max(step.penetration, -contact.gap);
     plan = planBodies(w, closing, contacts);
   }
+  const double viscosity_before = state.typical_viscosity;
   const CoupledReport solved = solveWithLiquid(w, contacts, step);
   step.iterations += solved.iterations;
   step.liquid_solves += solved.solves;
@@ -231,6 +233,23 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
     step.status =
         solved.status == CoupledReport::Status::kInconsistent ? SolveStatus::kInconsistent : SolveStatus::kNotConverged;
     step.message = solved.message;
+    return false;
+  }
+  // On a copy: of a step that does not hold nothing is kept.
+  std::vector<RigidBody> moved = state.bodies;
+  if (w.order == 2) {
+    const bool rebound = std::any_of(contacts.begin(), contacts.end(), [&](const Contact& contact) {
+      return closing[contact.body_a] && laws.of(contact.body_a, contact.body_b).restitution > 0.0;
+    });
+    finishSecondOrder(plan, contacts, rebound, scratch.other.twists, dt, moved);
+  } else {
+    finishEuler(scratch.other.twists, dt, moved);
+  }
+  step.message = describeIntrusion(plan, contacts, walls, scratch.other.twists, dt, kMostIntrusion * grid.h,
+                                   state.bodies, moved);
+  if (!step.message.empty()) {
+    step.status = SolveStatus::kNotConverged;
+    state.typical_viscosity = viscosity_before;
     return false;
   }
   std::swap(state.coupled, scratch.other);
@@ -249,14 +268,7 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
   });
 
   takeMeans(w, scratch.other.liquid);
-  if (w.order == 2) {
-    const bool rebound = std::any_of(contacts.begin(), contacts.end(), [&](const Contact& contact) {
-      return closing[contact.body_a] && laws.of(contact.body_a, contact.body_b).restitution > 0.0;
-    });
-    finishSecondOrder(plan, contacts, rebound, state.coupled.twists, dt, state.bodies);
-  } else {
-    finishEuler(state.coupled.twists, dt, state.bodies);
-  }
+  state.bodies = std::move(moved);
   const bool impact = std::find(closing.begin(), closing.end(), 1) != closing.end();
   state.euler_steps = impact ? kStepsAfterImpact : std::max(0, state.euler_steps - 1);
   state.last_dt = dt;

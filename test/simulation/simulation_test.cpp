@@ -373,6 +373,103 @@ TEST(Simulation, BadInputIsRefusedAndLosesNothing) {
   }
 }
 
+// What is small beside absurd speeds is a long way all the same: no committed step may leave the ball outside.
+TEST(Simulation, ABodyThatIsPushedThroughAWallFailsTheStepAndStays) {
+  int failures = 0;
+  for (const double level : {0.0, 0.08}) {
+    for (const double force : {1e6, 1e9, 1e12}) {
+      Scene scene = tank(level, 1.0);
+      scene.tank.cell_width = 0.02;
+      scene.solver.threads = 1;
+      scene.bodies.push_back(sphereBody("ball", 0.02, 900.0, {0.06, 0.08, 0.05}));
+      Simulation simulation(scene);
+      Wrench push;
+      push.force = force * Eigen::Vector3d(1.0, 0.3, 0.1);
+      simulation.setWrench(0, push);
+      for (int i = 0; i < 3; ++i) {
+        const BodyState before = simulation.bodyStates()[0];
+        const double time = simulation.time();
+        const StepReport r = simulation.step();
+        const BodyState after = simulation.bodyStates()[0];
+        const Eigen::Vector3d from_centre = after.X_WB.translation() - Eigen::Vector3d::Constant(0.08);
+        EXPECT_LE(from_centre.cwiseAbs().maxCoeff(), 0.06 + 0.5 * scene.tank.cell_width) << level << ", " << force;
+        if (r.committed()) continue;
+        EXPECT_EQ(simulation.time(), time);
+        EXPECT_EQ(after.X_WB.matrix(), before.X_WB.matrix());
+        EXPECT_EQ(after.velocity, before.velocity);
+        if (r.message.find("body 'ball' would stick out of the tank's wall +") == std::string::npos) break;
+        EXPECT_NE(r.message.find("expected at most half a cell, 0.01 m"), std::string::npos) << r.message;
+        ++failures;
+        // It goes on once the push is over.
+        simulation.setWrench(0, Wrench());
+        EXPECT_TRUE(simulation.step().committed());
+        break;
+      }
+    }
+  }
+  EXPECT_GE(failures, 3);
+}
+
+TEST(Simulation, ABodyThatIsPushedIntoAnotherFailsTheStepAndStays) {
+  Scene scene = tank(0.0, 1.0);
+  for (bool& periodic : scene.tank.periodic) periodic = true;
+  scene.gravity.setZero();
+  scene.bodies.push_back(sphereBody("ball", 0.02, 900.0, {0.04, 0.08, 0.05}));
+  scene.bodies.push_back(boxBody("post", {0.03, 0.03, 0.03}, 900.0, {0.12, 0.08, 0.05}));
+  scene.bodies[1].motion = BodyMotion::kFixed;
+  Simulation simulation(scene);
+  int failures = 0;
+  for (double force = 1e8; force < 2e12; force *= 1e2) {
+    simulation.reset();
+    Wrench push;
+    push.force[0] = force;
+    simulation.setWrench(0, push);
+    const StepReport r = simulation.step();
+    if (r.committed()) {
+      EXPECT_LE(simulation.bodyStates()[0].X_WB.translation()[0], 0.09);
+      continue;
+    }
+    EXPECT_EQ(simulation.bodyStates()[0].X_WB.translation(), Eigen::Vector3d(0.04, 0.08, 0.05));
+    if (r.message.find("bodies 'ball' and 'post' would overlap by") != std::string::npos) ++failures;
+  }
+  EXPECT_GE(failures, 1);
+}
+
+// Nothing stops a paddle: what is between it and a wall gives way, as it may.
+TEST(Simulation, APaddleMayPressABodyIntoAWall) {
+  Scene scene = tank(0.0, 1.0);
+  scene.bodies.push_back(sphereBody("ball", 0.02, 900.0, {0.12, 0.08, 0.02}));
+  BodyDescription paddle = boxBody("paddle", {0.03, 0.1, 0.1}, 900.0, {0.07, 0.08, 0.06});
+  paddle.motion = BodyMotion::kPrescribed;
+  paddle.prescribed.twist[0] = 0.1;
+  scene.bodies.push_back(paddle);
+  Simulation simulation(scene);
+  while (simulation.bodyStates()[1].X_WB.translation()[0] < 0.13) {
+    const StepReport r = simulation.step();
+    ASSERT_TRUE(r.committed()) << r.message;
+  }
+  EXPECT_GT(simulation.bodyStates()[0].X_WB.translation()[0], 0.14 + 0.5 * scene.tank.cell_width);
+}
+
+// Each number is finite, the velocity of the centre of mass beside the body's origin is not.
+TEST(Simulation, ASpinTooLargeForANumberAtTheCentreOfMassIsRefused) {
+  Scene scene = tank(0.08, 1.0);
+  scene.bodies.push_back(sphereBody("ball", 0.02, 500.0, {0.08, 0.08, 0.05}));
+  scene.bodies[0].p_BBcm = Eigen::Vector3d(0.0, 0.01, 0.0);
+  Simulation simulation(scene);
+  const BodyState before = simulation.bodyStates()[0];
+  try {
+    simulation.setBodyState(0, before.X_WB, {-1.79e308, 0.0, 0.0}, {0.0, 0.0, 1.7e308});
+    FAIL() << "accepted";
+  } catch (const std::invalid_argument& error) {
+    for (const char* part : {"'ball'", "velocity [-inf, ", "expected finite"}) {
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << part << " in: " << error.what();
+    }
+  }
+  EXPECT_EQ(simulation.bodyStates()[0].velocity, before.velocity);
+  EXPECT_TRUE(simulation.step().committed());
+}
+
 TEST(Simulation, AnAbsurdSpeedEndsInAReport) {
   Scene scene = tank(0.08, 1.0);
   scene.bodies.push_back(sphereBody("ball", 0.02, 500.0, {0.08, 0.08, 0.05}));
