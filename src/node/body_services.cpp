@@ -42,6 +42,7 @@ bool BodyServices::applyWrench(monolith_tank::ApplyBodyWrench::Request& request,
     command.point = fromMessage(request.reference_point, "reference_point");
     command.force = fromMessage(request.wrench.force, "wrench.force");
     command.torque = fromMessage(request.wrench.torque, "wrench.torque");
+    control_.requireFinite(body, command, "wrench");
     if (request.duration.isZero()) {
       throw RequestError("duration: value 0 s: expected > 0, or < 0 for a wrench without end");
     }

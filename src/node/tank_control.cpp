@@ -37,6 +37,15 @@ Eigen::Isometry3d TankControl::framePose(const std::string& frame, const std::st
   }
 }
 
+void TankControl::requireFinite(int body, const WrenchCommand& command, const std::string& field) const {
+  const Eigen::Isometry3d X_WF = framePose(command.frame, field);
+  try {
+    monolith::requireFinite(aboutCentreOfMass(command, X_WF, simulation_.bodies()[body].p_WBcm));
+  } catch (const RequestError& error) {
+    throw RequestError(field + ": on \"" + simulation_.bodies()[body].name + "\" " + error.what());
+  }
+}
+
 StepReport TankControl::step(std::vector<std::string>& lost) {
   const auto frame_pose = [this](const std::string& frame) {
     return frames_.pose(frame.empty() ? frames_.worldFrame() : frame, simulation_.bodies());
@@ -44,7 +53,9 @@ StepReport TankControl::step(std::vector<std::string>& lost) {
   const std::vector<Wrench> wrenches = wrenches_.evaluate(simulation_.time(), simulation_.bodies(), frame_pose, lost);
   try {
     for (std::size_t b = 0; b < wrenches.size(); ++b) simulation_.setWrench(static_cast<int>(b), wrenches[b]);
-    return simulation_.step();
+    const StepReport report = simulation_.step();
+    if (report.committed()) wrenches_.commit();
+    return report;
   } catch (const std::exception& error) {
     StepReport report = simulation_.report();
     report.status = SolveStatus::kNotConverged;

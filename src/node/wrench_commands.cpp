@@ -1,5 +1,7 @@
 #include "node/wrench_commands.h"
 
+#include <sstream>
+
 #include "node/request_error.h"
 
 namespace monolith {
@@ -14,6 +16,15 @@ Wrench aboutCentreOfMass(const WrenchCommand& command, const Eigen::Isometry3d& 
   wrench.force = X_WF.linear() * command.force;
   wrench.torque = X_WF.linear() * command.torque + (X_WF * command.point - p_WBcm).cross(wrench.force);
   return wrench;
+}
+
+void requireFinite(const Wrench& wrench) {
+  if (wrench.force.allFinite() && wrench.torque.allFinite()) return;
+  const Eigen::IOFormat row(6, Eigen::DontAlignCols, ", ", ", ", "", "", "[", "]");
+  std::ostringstream text;
+  text << "about the centre of mass force " << wrench.force.transpose().format(row) << " N and torque "
+       << wrench.torque.transpose().format(row) << " N m: expected finite numbers";
+  throw RequestError(text.str());
 }
 
 void WrenchCommands::hold(int body, const WrenchCommand& command) { held_[body].assign(1, Entry{command}); }
@@ -39,18 +50,29 @@ std::vector<Wrench> WrenchCommands::evaluate(double time, const std::vector<Rigi
   return sums;
 }
 
+void WrenchCommands::commit() {
+  for (auto* commands : {&held_, &applied_}) {
+    for (std::vector<Entry>& entries : *commands) {
+      for (Entry& entry : entries) entry.has_acted |= entry.acts;
+    }
+  }
+}
+
 void WrenchCommands::evaluate(std::vector<Entry>& entries, double time, const RigidBody& body,
                               const FramePose& frame_pose, Wrench& sum, std::vector<std::string>& lost) {
   std::vector<Entry> kept;
   for (Entry& entry : entries) {
+    entry.acts = false;
     const bool over = entry.has_acted && time > entry.command.end - kTimeSlack;
     if (over) continue;
     if (time >= entry.command.start - kTimeSlack) {
       try {
-        const Wrench wrench = aboutCentreOfMass(entry.command, frame_pose(entry.command.frame), body.p_WBcm);
-        sum.force += wrench.force;
-        sum.torque += wrench.torque;
-        entry.has_acted = true;
+        Wrench wrench = aboutCentreOfMass(entry.command, frame_pose(entry.command.frame), body.p_WBcm);
+        wrench.force += sum.force;
+        wrench.torque += sum.torque;
+        requireFinite(wrench);
+        sum = wrench;
+        entry.acts = true;
       } catch (const RequestError& error) {
         lost.push_back("wrench on \"" + body.name + "\" given up: " + error.what());
         continue;

@@ -26,6 +26,9 @@ struct WrenchCommand {
 
 Wrench aboutCentreOfMass(const WrenchCommand& command, const Eigen::Isometry3d& X_WF, const Eigen::Vector3d& p_WBcm);
 
+// RequestError with the wrench about the centre of mass if it is too large for a number.
+void requireFinite(const Wrench& wrench);
+
 class WrenchCommands {
  public:
   explicit WrenchCommands(int bodies) : held_(bodies), applied_(bodies) {}
@@ -40,14 +43,18 @@ class WrenchCommands {
   // X_WF of a frame; throws RequestError.
   using FramePose = std::function<Eigen::Isometry3d(const std::string& frame)>;
 
-  // The sum for each body in the step that begins at `time`. Commands that are over are forgotten. So are those whose
-  // frame is no longer known: a line for each is appended to `lost`.
+  // The sum for each body in the step that begins at `time`, always finite. Commands that are over are forgotten. So are
+  // those whose frame is no longer known, or that with those before them are too large for a number: a line for each is
+  // appended to `lost`.
   std::vector<Wrench> evaluate(double time, const std::vector<RigidBody>& bodies, const FramePose& frame_pose,
                                std::vector<std::string>& lost);
+  // The step that was evaluated last was committed: only now have its commands acted.
+  void commit();
 
  private:
   struct Entry {
     WrenchCommand command;
+    bool acts = false;  // in the step that was evaluated last
     bool has_acted = false;
   };
   static void evaluate(std::vector<Entry>& entries, double time, const RigidBody& body, const FramePose& frame_pose,

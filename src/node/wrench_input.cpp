@@ -33,7 +33,9 @@ void WrenchInput::receive(const geometry_msgs::WrenchStamped& message, int body,
     command.frame = message.header.frame_id;
     command.force = fromMessage(message.wrench.force, "wrench.force");
     command.torque = fromMessage(message.wrench.torque, "wrench.torque");
-    control_.framePose(command.frame, "header.frame_id");  // refused now rather than in the step
+    // Refused now rather than in the step.
+    control_.framePose(command.frame, "header.frame_id");
+    control_.requireFinite(body, command, "wrench");
     command.start = control_.simulation().time();
     command.end = command.start + timeout_sec_;
     control_.wrenches().hold(body, command);

@@ -24,6 +24,7 @@ from tank_client import (NODE, BodyStates, Collector, Tank, allFinite, pose, sta
 
 STEP_SEC = 0.02
 NAN = float('nan')
+HUGE = 1.79e308
 
 
 class InterfaceTest(unittest.TestCase):
@@ -306,9 +307,11 @@ class InterfaceTest(unittest.TestCase):
         before = self.tank.state('ball')
         refused, _ = self.refusals()
         for message in (stamped('world', force=(NAN, 0.0, 0.0)), stamped('world', torque=(0.0, float('inf'), 0.0)),
-                        stamped('wrld', force=(1.0, 0.0, 0.0)), stamped('', force=(1.0, 0.0, 0.0))):
+                        stamped('wrld', force=(1.0, 0.0, 0.0)), stamped('', force=(1.0, 0.0, 0.0)),
+                        # Too large for a number only where they are added up, about the centre of mass.
+                        stamped('probe', force=(HUGE, 0.0, 0.0), torque=(0.0, 0.0, HUGE))):
             self.send(self.ball_wrench, message)
-        waitUntil(lambda: self.refusals()[0] == refused + 4, 'the refusals on /diagnostics')
+        waitUntil(lambda: self.refusals()[0] == refused + 5, 'the refusals on /diagnostics')
         level = self.refusals()[1]
         self.assertEqual(level if isinstance(level, int) else ord(level), 1)
         self.unchanged('ball', before)

@@ -48,6 +48,7 @@ std::vector<double> pushes(WrenchCommands& commands, int steps) {
   for (int i = 0; i < steps; ++i) {
     const auto identity = [](const std::string&) { return Isometry3d::Identity(); };
     out.push_back(commands.evaluate(0.1 * i, bodies, identity, lost)[0].force.x());
+    commands.commit();
   }
   EXPECT_TRUE(lost.empty());
   return out;
@@ -120,6 +121,47 @@ TEST(WrenchCommands, LostFrameEndsOnlyItsOwnCommand) {
   EXPECT_NE(lost[0].find("gone"), std::string::npos);
   EXPECT_EQ(commands.evaluate(0.1, bodies, frames, lost)[0].force.x(), 1.0);
   EXPECT_EQ(lost.size(), 1u);
+}
+
+TEST(WrenchCommands, OfAStepThatWasNotCommittedActInTheNext) {
+  WrenchCommands commands(1);
+  commands.hold(0, push(0.0, 0.01));
+  commands.apply(0, push(0.0, 0.01, 10.0 * Vector3d::UnitX()));
+  const std::vector<RigidBody> bodies = {bodyAt(Isometry3d::Identity(), Vector3d::Zero())};
+  const auto identity = [](const std::string&) { return Isometry3d::Identity(); };
+  std::vector<std::string> lost;
+  // Also if time has gone on, as by a step in which the wrench was held back.
+  for (const double time : {0.0, 0.0, 0.1}) {
+    EXPECT_EQ(commands.evaluate(time, bodies, identity, lost)[0].force.x(), 11.0) << time;
+  }
+  commands.commit();
+  EXPECT_EQ(commands.evaluate(0.2, bodies, identity, lost)[0].force.x(), 0.0);
+  EXPECT_TRUE(lost.empty());
+}
+
+TEST(WrenchCommands, TooLargeForANumberIsGivenUpByNameAndTheOthersAct) {
+  WrenchCommands commands(2);
+  WrenchCommand far = push(0.0, 1.0, 1e200 * Vector3d::UnitX());
+  far.point = 1e200 * Vector3d::UnitY();
+  commands.apply(0, far);
+  commands.apply(0, push(0.0, 1.0, 1.5e308 * Vector3d::UnitX()));
+  commands.apply(0, push(0.0, 1.0, 1.5e308 * Vector3d::UnitX()));
+  commands.apply(1, push(0.0, 1.0));
+  std::vector<RigidBody> bodies(2, bodyAt(Isometry3d::Identity(), Vector3d::Zero()));
+  const auto identity = [](const std::string&) { return Isometry3d::Identity(); };
+  std::vector<std::string> lost;
+  std::vector<Wrench> sums = commands.evaluate(0.0, bodies, identity, lost);
+  EXPECT_EQ(sums[0].force.x(), 1.5e308);
+  EXPECT_EQ(sums[0].torque.norm(), 0.0);
+  EXPECT_EQ(sums[1].force.x(), 1.0);
+  ASSERT_EQ(lost.size(), 2u);
+  EXPECT_NE(lost[0].find("\"body\""), std::string::npos) << lost[0];
+  EXPECT_NE(lost[0].find("torque [0, 0, -inf]"), std::string::npos) << lost[0];
+  EXPECT_NE(lost[1].find("force [inf, 0, 0]"), std::string::npos) << lost[1];
+  EXPECT_NE(lost[1].find("expected finite"), std::string::npos) << lost[1];
+  sums = commands.evaluate(0.1, bodies, identity, lost);
+  EXPECT_EQ(sums[0].force.x(), 1.5e308);
+  EXPECT_EQ(lost.size(), 2u);
 }
 
 class ReferenceFramesTest : public ::testing::Test {
