@@ -24,13 +24,14 @@ TankNode::TankNode(ros::NodeHandle& global, ros::NodeHandle& local, ros::Callbac
       wrench_input_(local, control_, options.wrench_timeout, [this](const std::string& text) { refuse(text); }),
       body_services_(local, control_, options.world_frame,
                      {[this] { return publisher_.stamp(); }, [this](const std::string& text) { refuse(text); },
-                      [this] { publisher_.publish(control_.simulation().report(), factor_.value(), true); }}) {
+                      [this] { stateChanged(); }}) {
   servers_.push_back(local.advertiseService("pause_physics", &TankNode::pause, this));
   servers_.push_back(local.advertiseService("unpause_physics", &TankNode::unpause, this));
   servers_.push_back(local.advertiseService("reset_simulation", &TankNode::reset, this));
   servers_.push_back(local.advertiseService("step", &TankNode::stepPhysics, this));
   health_.paced = options.paced;
   health_.paused = options.start_paused;
+  health_.report = control_.simulation().report();
   if (options.progress && options.duration > 0.0) progress_ = std::make_unique<ProgressBar>(options.duration);
   const double possible = 1.0 / scene.time_step;
   if (options.state_rate > possible * (1.0 + 1e-9)) {
@@ -121,6 +122,11 @@ bool TankNode::advance() {
   publisher_.publish(health_.report, health_.real_time_factor, isFinished());
   if (progress_) progress_->show(control_.simulation().time(), health_.real_time_factor);
   return true;
+}
+
+void TankNode::stateChanged() {
+  health_.report = control_.simulation().report();
+  publisher_.publish(health_.report, factor_.value(), true);
 }
 
 void TankNode::setPaused(bool paused) {

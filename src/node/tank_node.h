@@ -40,6 +40,7 @@ class TankNode {
   void linger();
   void serve(double wall_sec);
   bool isFinished() const;
+  void stateChanged();
   // False if the step was not committed.
   bool advance();
   void setPaused(bool paused);

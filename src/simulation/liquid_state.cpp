@@ -156,39 +156,52 @@ std::vector<double> hydrostaticPressure(const MacGrid& grid, const FreeSurface& 
   return pressure;
 }
 
-LiquidBudget liquidBudget(const MacGrid& grid, const FaceField<double>& liquid_mass, const FaceField<double>& velocity,
-                          const FreeSurface& surface, const std::vector<double>& cell_fluid, double density,
-                          const Eigen::Vector3d& gravity) {
+LiquidMotion liquidMotion(const MacGrid& grid, const FaceField<double>& liquid_mass, const FaceField<double>& velocity,
+                          double density) {
   const Lattice& l = grid.lattice;
   // One sum per plane, added in order: the same bits at any thread count.
-  std::vector<LiquidBudget> planes(l.faceEnd(2));
+  std::vector<LiquidMotion> planes(l.faceEnd(2));
 #pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int k = 0; k < l.faceEnd(2); ++k) {
-    LiquidBudget& plane = planes[k];
+    LiquidMotion& plane = planes[k];
     for (int j = 0; j < l.faceEnd(1); ++j) {
       for (int i = 0; i < l.faceEnd(0); ++i) {
         const auto c = l.index(i, j, k);
         for (int a = 0; a < 3; ++a) {
           const double momentum = liquid_mass[a][c] * velocity[a][c];
           plane.momentum[a] += momentum;
-          plane.kinetic += 0.5 * momentum * velocity[a][c];
+          plane.energy += 0.5 * momentum * velocity[a][c];
         }
-        if (i >= l.n[0] || j >= l.n[1] || k >= l.n[2]) continue;
-        const double part = std::clamp(0.5 - surface.distance()[c], 0.0, 1.0) * cell_fluid[c];
-        if (part > 0.0) plane.potential -= part * gravity.dot(grid.cellCenter(i, j, k));
       }
     }
   }
-  LiquidBudget budget;
-  for (const LiquidBudget& plane : planes) {
-    budget.kinetic += plane.kinetic;
-    budget.potential += plane.potential;
-    budget.momentum += plane.momentum;
+  LiquidMotion motion;
+  for (const LiquidMotion& plane : planes) {
+    motion.energy += plane.energy;
+    motion.momentum += plane.momentum;
   }
-  budget.kinetic *= density * grid.cellVolume();
-  budget.potential *= density * grid.cellVolume();
-  budget.momentum *= density * grid.cellVolume();
-  return budget;
+  motion.energy *= density * grid.cellVolume();
+  motion.momentum *= density * grid.cellVolume();
+  return motion;
+}
+
+double liquidPotential(const MacGrid& grid, const FreeSurface& surface, const std::vector<double>& cell_fluid,
+                       double density, const Eigen::Vector3d& gravity) {
+  const Lattice& l = grid.lattice;
+  std::vector<double> planes(l.n[2]);  // as above
+#pragma omp parallel for schedule(static, kPlanesInTurn)
+  for (int k = 0; k < l.n[2]; ++k) {
+    for (int j = 0; j < l.n[1]; ++j) {
+      for (int i = 0; i < l.n[0]; ++i) {
+        const auto c = l.index(i, j, k);
+        const double part = std::clamp(0.5 - surface.distance()[c], 0.0, 1.0) * cell_fluid[c];
+        if (part > 0.0) planes[k] -= part * gravity.dot(grid.cellCenter(i, j, k));
+      }
+    }
+  }
+  double potential = 0.0;
+  for (const double plane : planes) potential += plane;
+  return potential * (density * grid.cellVolume());
 }
 
 std::vector<SurfacePoint> sampleSurface(const MacGrid& grid, const FreeSurface& surface,

@@ -32,14 +32,16 @@ std::vector<double> hydrostaticPressure(const MacGrid& grid, const FreeSurface& 
                                         const Eigen::Vector3d& gravity);
 
 // liquid_mass: liquid part of each face's control volume.
-struct LiquidBudget {
-  double kinetic = 0.0;                                // J
-  double potential = 0.0;                              // J, zero at the world's origin
+struct LiquidMotion {
+  double energy = 0.0;                                 // J, kinetic
   Eigen::Vector3d momentum = Eigen::Vector3d::Zero();  // kg m/s, in W
 };
-LiquidBudget liquidBudget(const MacGrid& grid, const FaceField<double>& liquid_mass, const FaceField<double>& velocity,
-                          const FreeSurface& surface, const std::vector<double>& cell_fluid, double density,
-                          const Eigen::Vector3d& gravity);
+LiquidMotion liquidMotion(const MacGrid& grid, const FaceField<double>& liquid_mass, const FaceField<double>& velocity,
+                          double density);
+
+// J, zero at the world's origin.
+double liquidPotential(const MacGrid& grid, const FreeSurface& surface, const std::vector<double>& cell_fluid,
+                       double density, const Eigen::Vector3d& gravity);
 
 std::vector<SurfacePoint> sampleSurface(const MacGrid& grid, const FreeSurface& surface,
                                         const std::vector<double>& cell_distance, const FaceField<double>& velocity);

@@ -57,6 +57,8 @@ void Simulation::Impl::initialise() {
   prepareGeometry();
   target_volume = state.surface[0].volume(solids.cell_fluid);
   state.typical_viscosity = viscosity_law.viscosity(0.0);
+  measureState(report);
+  tellModel(report.model);
 }
 
 void Simulation::Impl::prepareGeometry() {
@@ -74,14 +76,24 @@ double Simulation::Impl::bodySpeed() const {
   return speed;
 }
 
-void Simulation::Impl::measure(StepReport& step) const {
+// With the masses of the last solve, which only a step that is committed leaves.
+void Simulation::Impl::measureLiquidMotion(StepReport& step) {
+  if (!hasLiquid()) return;
+  const LiquidMotion motion =
+      liquidMotion(grid, system.problem().liquidMass(), state.coupled.velocity, scene.liquid.density);
+  state.liquid_energy = motion.energy + sticking_energy;
+  step.liquid_momentum = motion.momentum + sticking_momentum;
+}
+
+// What the report tells of a state that no step needs to have led to.
+void Simulation::Impl::measureState(StepReport& step) const {
+  step.liquid_volume = 0.0;
+  step.kinetic_energy = state.liquid_energy;
+  step.potential_energy = 0.0;
   if (hasLiquid()) {
     step.liquid_volume = state.surface[0].volume(solids.cell_fluid);
-    const LiquidBudget budget = liquidBudget(grid, system.problem().liquidMass(), state.coupled.velocity,
-                                             state.surface[0], solids.cell_fluid, scene.liquid.density, scene.gravity);
-    step.kinetic_energy = budget.kinetic + sticking_energy;
-    step.potential_energy = budget.potential;
-    step.liquid_momentum = budget.momentum + sticking_momentum;
+    step.potential_energy =
+        liquidPotential(grid, state.surface[0], solids.cell_fluid, scene.liquid.density, scene.gravity);
   }
   for (const RigidBody& body : state.bodies) {
     if (body.motion != BodyMotion::kFree) continue;
@@ -90,6 +102,14 @@ void Simulation::Impl::measure(StepReport& step) const {
         0.5 * body.mass * body.twist.head<3>().squaredNorm() + 0.5 * spin.dot(body.worldInertia() * spin);
     step.potential_energy -= body.mass * scene.gravity.dot(body.p_WBcm);
   }
+}
+
+// What the state alone tells of the next step's model, or of the last one's.
+void Simulation::Impl::tellModel(ModelChoice& model) const {
+  model.liquid = hasLiquid();
+  model.viscosity = hasLiquid() && noSlip();
+  model.non_newtonian = nonNewtonian();
+  model.free_surface = hasSurface();
 }
 
 const Scene& Simulation::scene() const { return impl_->scene; }
@@ -141,7 +161,8 @@ StepReport Simulation::step() {
       step.status = SolveStatus::kConverged;
       ++m.state.step;
       m.state.time = static_cast<double>(m.state.step) * m.scene.time_step;
-      m.measure(step);
+      m.measureLiquidMotion(step);
+      m.measureState(step);
     } else {
       if (step.substeps > 1) std::swap(m.state, m.before);
       m.state.mean_liquid = last_liquid;
@@ -154,7 +175,7 @@ StepReport Simulation::step() {
       step.potential_energy = m.report.potential_energy;
       step.liquid_momentum = m.report.liquid_momentum;
       step.maximum_speed = m.report.maximum_speed;
-      step.model.liquid = m.hasLiquid();
+      m.tellModel(step.model);
     }
     if (thrown) {
       omp_set_num_threads(threads_before);
@@ -226,6 +247,7 @@ void Simulation::setBodyState(int body, const Eigen::Isometry3d& X_WB, const Eig
   m.state.bodies = bodies;
   m.state.euler_steps = kStepsAfterSet;
   m.prepareGeometry();
+  m.measureState(m.report);
 }
 
 void Simulation::setLiquidVelocity(const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& velocity) {

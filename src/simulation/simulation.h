@@ -44,7 +44,8 @@ class Simulation {
 
   // Advances by scene().time_step, in as many sub-steps as the CFL number asks for.
   [[nodiscard]] StepReport step();
-  // Report of the last step; status kNotRun before the first.
+  // Report of the last step; before the first its status is kNotRun. Volume and energies are those of the present state
+  // also after setBodyState().
   const StepReport& report() const;
 
   // Indexed as scene().bodies.

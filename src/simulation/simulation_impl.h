@@ -49,6 +49,7 @@ struct SimulationState {
   std::size_t substeps = 0;
   bool started = false;
   double typical_viscosity = 0.0;  // Pa s, of a non-Newtonian liquid
+  double liquid_energy = 0.0;      // J, kinetic, after the last output step
 };
 
 struct Simulation::Impl {
@@ -87,7 +88,9 @@ struct Simulation::Impl {
   void takeMeans(const StepWeights& w, const std::vector<Wrench>& liquid_before);
   void moveLiquid(const StepWeights& w, StepReport& report);
   void prepareGeometry();
-  void measure(StepReport& report) const;
+  void measureLiquidMotion(StepReport& report);
+  void measureState(StepReport& report) const;
+  void tellModel(ModelChoice& model) const;
 
   Scene scene;
   MacGrid grid;

@@ -20,7 +20,7 @@ struct StageTimes {  // s of wall time, summed over the sub-steps
   double total = 0.0;
 };
 
-struct ModelChoice {  // what the last sub-step modelled, chosen from the state
+struct ModelChoice {  // what the last sub-step modelled, chosen from the state; before the first what the state tells
   bool liquid = false;
   bool viscosity = false;
   bool non_newtonian = false;

@@ -256,10 +256,7 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
   state.started = true;
   sticking_energy = system.stickingEnergy(state.coupled.twists);
   sticking_momentum = system.stickingMomentum(state.coupled.twists);
-  step.model.liquid = hasLiquid();
-  step.model.viscosity = hasLiquid() && noSlip();
-  step.model.non_newtonian = nonNewtonian();
-  step.model.free_surface = hasSurface();
+  tellModel(step.model);
   step.model.time_order = w.order;
   step.model.coupled_bodies = system.coupledBodies();
   step.model.contacts = static_cast<int>(contacts.size());

@@ -181,6 +181,19 @@ class InterfaceTest(unittest.TestCase):
         self.assertAlmostEqual(links['world/tank'].transform.translation.x, -0.08)
         self.assertEqual(links['ball/core'].header.frame_id, 'ball')
 
+    def testStatisticsBeforeTheFirstStepAreOfTheState(self):
+        statistics = Collector(NODE + '/statistics', Statistics)
+        initial = statistics.waitFor()[-1]
+        self.assertEqual((initial.status, initial.committed, initial.step), ('not run', False, 0))
+        self.assertTrue(initial.liquid and initial.viscosity and initial.free_surface)
+        self.assertAlmostEqual(initial.liquid_volume, 0.16 * 0.16 * 0.08, delta=0.1 * 0.16 * 0.16 * 0.08)
+        self.assertEqual(initial.kinetic_energy, 0.0)
+        # That of the liquid alone, about, whose bodies are as heavy as it is.
+        self.assertAlmostEqual(initial.potential_energy, 900.0 * 0.16 * 0.16 * 0.08 * 9.81 * 0.04, delta=0.1)
+        self.tank.set(body_name='ball', pose=pose(-0.04, 0.0, 0.05), twist=twist((2.0, 0.0, 0.0)))
+        waitUntil(lambda: statistics.messages[-1].kinetic_energy > 0.0, 'the energy of the state that was set')
+        self.assertAlmostEqual(statistics.messages[-1].kinetic_energy, 0.5 * 0.030159289 * 4.0, places=9)
+
     def testSurfaceIsTheFillLevel(self):
         cloud = Collector(NODE + '/surface', PointCloud2).waitFor()[-1]
         self.assertEqual([field.name for field in cloud.fields],

@@ -273,6 +273,48 @@ TEST(Simulation, AFailedStepReportsTheStateThatItLeaves) {
   EXPECT_TRUE(failed.model.liquid);
 }
 
+TEST(Simulation, TheReportIsOfTheStateAlsoBeforeTheFirstStepAndAfterASetState) {
+  Scene scene = tank(0.08, 1.0);
+  scene.bodies.push_back(sphereBody("ball", 0.02, 2000.0, {0.08, 0.08, 0.04}));
+  scene.bodies[0].velocity = Eigen::Vector3d(0.3, 0.0, 0.0);
+  const double mass = scene.bodies[0].mass, ball = mass / 2000.0;
+  const double volume = 0.16 * 0.16 * 0.08 - ball;
+  const auto expectStart = [&](const StepReport& r) {
+    EXPECT_NEAR(r.liquid_volume, volume, 0.01 * volume);
+    EXPECT_NEAR(r.kinetic_energy, 0.5 * mass * 0.09, 1e-12);
+    // The ball's own volume of liquid is missing at its height.
+    EXPECT_NEAR(r.potential_energy, 9.81 * 0.04 * (1000.0 * (volume + ball) + mass - 1000.0 * ball), 0.01);
+    EXPECT_TRUE(r.model.liquid && r.model.viscosity && r.model.free_surface);
+    EXPECT_FALSE(r.model.non_newtonian);
+  };
+  Simulation simulation(scene);
+  EXPECT_EQ(simulation.report().status, SolveStatus::kNotRun);
+  expectStart(simulation.report());
+  Wrench absurd;
+  absurd.force[0] = 1e305;
+  simulation.setWrench(0, absurd);
+  const StepReport failed = simulation.step();
+  ASSERT_FALSE(failed.committed());
+  expectStart(failed);
+
+  simulation.setWrench(0, Wrench());
+  ASSERT_TRUE(simulation.step().committed());
+  simulation.reset();
+  EXPECT_EQ(simulation.report().status, SolveStatus::kNotRun);
+  expectStart(simulation.report());
+
+  ASSERT_TRUE(simulation.step().committed());
+  const BodyState before = simulation.bodyStates()[0];
+  const StepReport step = simulation.report();
+  Eigen::Isometry3d pose = before.X_WB;
+  pose.translation()[2] += 0.01;
+  simulation.setBodyState(0, pose, {0.0, 5.0, 0.0}, Eigen::Vector3d::Zero());
+  const double gained = 0.5 * mass * (25.0 - before.velocity.squaredNorm());
+  EXPECT_NEAR(simulation.report().kinetic_energy - step.kinetic_energy, gained, 0.02 * gained);
+  EXPECT_NEAR(simulation.report().potential_energy - step.potential_energy, 9.81 * 0.01 * (mass - 1000.0 * ball), 2e-3);
+  EXPECT_EQ(simulation.report().step, 1);
+}
+
 TEST(Simulation, LiquidThatIsGivenASpeedIsSteppedAccordingly) {
   Scene scene = tank(0.08, 1.0);
   scene.solver.time_stepping = TimeStepping::kBackwardEuler;
