@@ -1,5 +1,6 @@
 #include "node/body_services.h"
 
+#include <cstdio>
 #include <limits>
 #include <stdexcept>
 
@@ -7,6 +8,17 @@
 #include "node/request_error.h"
 
 namespace monolith {
+namespace {
+
+constexpr double kLongestWaitSec = 1e9;  // until a wrench begins
+
+std::string shownSeconds(double seconds) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.12g", seconds);
+  return text;
+}
+
+}  // namespace
 
 BodyServices::BodyServices(ros::NodeHandle& local, TankControl& control, const std::string& world_frame, Hooks hooks)
     : control_(control), world_frame_(world_frame), hooks_(std::move(hooks)) {
@@ -46,8 +58,13 @@ bool BodyServices::applyWrench(monolith_tank::ApplyBodyWrench::Request& request,
     if (request.duration.isZero()) {
       throw RequestError("duration: value 0 s: expected > 0, or < 0 for a wrench without end");
     }
-    const double now = control_.simulation().time();
-    command.start = now + std::max((request.start_time - hooks_.now()).toSec(), 0.0);
+    // As numbers: ROS cannot hold every difference of two times.
+    const double wait = request.start_time.toSec() - hooks_.now().toSec();
+    if (wait > kLongestWaitSec) {
+      throw RequestError("start_time: value " + shownSeconds(request.start_time.toSec()) + " s: expected at most " +
+                         shownSeconds(kLongestWaitSec) + " s after now, " + shownSeconds(hooks_.now().toSec()) + " s");
+    }
+    command.start = control_.simulation().time() + std::max(wait, 0.0);
     command.end = request.duration < ros::Duration(0.0) ? std::numeric_limits<double>::infinity()
                                                         : command.start + request.duration.toSec();
     control_.wrenches().apply(body, command);

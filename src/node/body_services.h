@@ -26,6 +26,9 @@ class BodyServices {
 
   BodyServices(ros::NodeHandle& local, TankControl& control, const std::string& world_frame, Hooks hooks);
 
+  // Serves no longer.
+  void close() { servers_.clear(); }
+
  private:
   bool applyWrench(monolith_tank::ApplyBodyWrench::Request& request,
                    monolith_tank::ApplyBodyWrench::Response& response);

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <memory>
 
 #include "node/node_options.h"
 #include "node/scene_lookup.h"
@@ -34,19 +35,24 @@ int main(int argc, char** argv) {
   ros::init(argc, argv, "monolith_tank_node");
   ros::NodeHandle global;
   ros::NodeHandle local("~");
+  std::unique_ptr<monolith::TankNode> node;
   try {
     XmlRpc::XmlRpcValue parameters;
     ros::param::get(local.getNamespace(), parameters);
     const monolith::NodeOptions options = monolith::readNodeOptions(parameters);
     const monolith::Scene scene =
         monolith::loadScene(monolith::findSceneFile(options.scene), monolith::makeRosResolver());
-    monolith::TankNode node(global, local, *ros::getGlobalCallbackQueue(), options, scene);
+    node = std::make_unique<monolith::TankNode>(global, local, *ros::getGlobalCallbackQueue(), options, scene);
     ROS_INFO("Scene %s: %zu bodies, tank of %g x %g x %g m, cells of %g m", scene.name.c_str(), scene.bodies.size(),
              scene.tank.size.x(), scene.tank.size.y(), scene.tank.size.z(), scene.tank.cell_width);
-    if (!node.run()) return 1;
   } catch (const std::exception& error) {
     ROS_FATAL("Cannot start:\n%s", error.what());
     return 1;
   }
-  return 0;
+  try {
+    return node->run() ? 0 : 1;
+  } catch (const std::exception& error) {
+    ROS_FATAL("Stopped at %g s: %s", node->time(), error.what());
+    return 1;
+  }
 }

@@ -12,6 +12,8 @@ namespace {
 
 using XmlRpc::XmlRpcValue;
 
+constexpr double kLongestDurationSec = 4e9;  // of the 2^32 that ROS can hold; a stamp is a time step later
+
 std::string shown(const XmlRpcValue& value) {
   std::ostringstream text;
   value.write(text);
@@ -64,13 +66,13 @@ class ParameterReader {
     if (!fulfilled) fail(name, expected);
   }
 
+  bool knows(const std::string& name) const { return std::count(known_.begin(), known_.end(), name) > 0; }
+
   // Call last: what has not been read until now is unknown.
   void finish() {
     if (parameters_.getType() == XmlRpcValue::TypeStruct) {
       for (const auto& entry : parameters_) {
-        if (std::count(known_.begin(), known_.end(), entry.first) || isRobotDescription(entry.first, entry.second)) {
-          continue;
-        }
+        if (knows(entry.first) || isRobotDescription(entry.first, entry.second)) continue;
         add("~" + entry.first + ": unknown parameter: expected another, the nearest is ~" +
             nearestWord(entry.first, known_));
       }
@@ -96,10 +98,7 @@ class ParameterReader {
   std::string errors_;
 };
 
-}  // namespace
-
-NodeOptions readNodeOptions(const XmlRpcValue& parameters) {
-  ParameterReader reader(parameters);
+NodeOptions readAll(ParameterReader& reader) {
   NodeOptions options;
   reader.read("scene", options.scene);
   reader.read("paced", options.paced);
@@ -119,8 +118,23 @@ NodeOptions readNodeOptions(const XmlRpcValue& parameters) {
   reader.require(!options.scene.empty(), "scene", "the path of a scene file or the name of a shipped scene");
   reader.require(!options.world_frame.empty() && options.world_frame[0] != '/', "world_frame",
                  "a tf frame without a leading slash");
+  reader.require(options.duration <= kLongestDurationSec, "duration", "at most 4e9 s, ROS cannot hold later times");
+  return options;
+}
+
+}  // namespace
+
+NodeOptions readNodeOptions(const XmlRpcValue& parameters) {
+  ParameterReader reader(parameters);
+  const NodeOptions options = readAll(reader);
   reader.finish();
   return options;
+}
+
+bool isNodeParameter(const std::string& name) {
+  ParameterReader reader{XmlRpcValue()};
+  readAll(reader);
+  return reader.knows(name) || endsWith(name, "robot_description");
 }
 
 }  // namespace monolith

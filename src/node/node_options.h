@@ -33,4 +33,7 @@ class OptionsError : public std::runtime_error {
 // name), wrong types, values out of range. Entries named *robot_description are URDF texts and left alone.
 NodeOptions readNodeOptions(const XmlRpc::XmlRpcValue& parameters);
 
+// Whether the node has, or may have, a private parameter of this name.
+bool isNodeParameter(const std::string& name);
+
 }  // namespace monolith

@@ -6,6 +6,10 @@
 #include <tf2_msgs/TFMessage.h>
 #include <visualization_msgs/MarkerArray.h>
 
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
+
 #include "node/message_conversion.h"
 #include "node/point_cloud.h"
 #include "node/reference_frames.h"
@@ -17,6 +21,7 @@ namespace {
 // Deep enough that a reader that is slow for a moment misses nothing of an unpaced run.
 constexpr int kQueueSize = 1000;
 constexpr int kLargeQueueSize = 100;
+constexpr std::uint32_t kLatestStampSec = std::numeric_limits<std::uint32_t>::max();
 
 }  // namespace
 
@@ -48,7 +53,14 @@ StatePublisher::StatePublisher(ros::NodeHandle& global, ros::NodeHandle& local, 
   }
 }
 
-ros::Time StatePublisher::stamp() const { return ros::Time(simulation_.time() + simulation_.scene().time_step); }
+ros::Time StatePublisher::stamp() const {
+  const double seconds = simulation_.time() + simulation_.scene().time_step;
+  if (seconds > kLatestStampSec) {
+    throw std::runtime_error("stamp of the next state: value " + std::to_string(seconds) + " s: expected at most " +
+                             std::to_string(kLatestStampSec) + " s, the latest time that ROS can hold");
+  }
+  return ros::Time(seconds);
+}
 
 std_msgs::Header StatePublisher::header() const {
   std_msgs::Header header;
@@ -99,6 +111,10 @@ void StatePublisher::publishClock() {
   rosgraph_msgs::Clock message;
   message.clock = stamp();
   clock_.publish(message);
+}
+
+void StatePublisher::setRosTime() const {
+  if (owns_clock_) ros::Time::setNow(stamp());
 }
 
 void StatePublisher::publishTransforms(const std::vector<BodyState>& states) {

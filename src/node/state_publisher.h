@@ -28,7 +28,10 @@ class StatePublisher {
   void publish(const StepReport& report, double real_time_factor, bool all);
   void publishStatistics(const StepReport& report, double real_time_factor);
   void publishClock();
+  // This process's own ros::Time, where the node owns the clock: /clock comes back to it late.
+  void setRosTime() const;
 
+  // Throws std::runtime_error beyond the end of ROS time.
   ros::Time stamp() const;
   // Topics of the run's states that nobody listens to yet.
   std::vector<std::string> topicsWithoutSubscriber() const;

@@ -91,6 +91,9 @@ void TankNode::waitForSubscribers() {
 
 void TankNode::linger() {
   updateDiagnostics(true);
+  // What was recorded last is the end: nobody changes it any more.
+  servers_.clear();
+  body_services_.close();
   const double end = wallNow() + kLingerSec;
   while (ros::ok() && wallNow() < end) serve(kIdleSec);
 }
@@ -133,6 +136,7 @@ void TankNode::setPaused(bool paused) {
   health_.paused = paused;
   pacer_.restart(wallNow(), control_.simulation().time());
   factor_.restart();
+  health_.real_time_factor = 0.0;  // not known yet
   if (!paused) factor_.add(wallNow(), control_.simulation().time());
   updateDiagnostics(true);
 }
@@ -142,7 +146,10 @@ void TankNode::refuse(const std::string& message) {
   diagnostics_.countRefusal(message);
 }
 
-void TankNode::updateDiagnostics(bool force) { diagnostics_.update(health_, force); }
+void TankNode::updateDiagnostics(bool force) {
+  publisher_.setRosTime();
+  diagnostics_.update(health_, force);
+}
 
 bool TankNode::pause(std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
   setPaused(true);
@@ -175,9 +182,18 @@ bool TankNode::stepPhysics(monolith_tank::StepPhysics::Request& request,
     response.message =
         "steps: value " + std::to_string(request.steps) + ": expected 1 to " + std::to_string(kMostSteps);
   } else {
-    response.success = true;
-    for (std::uint32_t i = 0; i < request.steps && response.success && ros::ok(); ++i) response.success = advance();
-    if (!response.success) response.message = health_.report.message;
+    std::uint32_t taken = 0;
+    while (taken < request.steps && !isFinished() && ros::ok() && advance()) {
+      ++taken;
+      updateDiagnostics(false);
+    }
+    response.success = taken == request.steps;
+    if (!response.success) {
+      const std::string why = health_.failed ? health_.report.message
+                              : isFinished() ? "~duration is over"
+                                             : "the node is shutting down";
+      response.message = "after " + std::to_string(taken) + " of " + std::to_string(request.steps) + " steps: " + why;
+    }
     setPaused(true);
   }
   if (!response.success) refuse("~step: " + response.message);

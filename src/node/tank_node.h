@@ -34,6 +34,7 @@ class TankNode {
 
   // Until the duration is over or ROS shuts down. False if a bounded run ended because a step failed.
   [[nodiscard]] bool run();
+  double time() const { return control_.simulation().time(); }  // s, simulated
 
  private:
   void waitForSubscribers();

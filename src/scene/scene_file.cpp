@@ -12,6 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kLongestTimeStep = 1e6;  // s; with longer ones there are hardly any until clocks overflow
+
 YAML::Node parseYaml(const std::string& yaml_file) {
   std::error_code error;
   if (!fs::is_regular_file(yaml_file, error)) {
@@ -61,6 +63,7 @@ Scene loadScene(const std::string& yaml_file, const SceneResolver& resolver) {
   map.read("name", scene.name);
   map.read<3>("gravity", scene.gravity);
   map.read("time_step", scene.time_step, Range::kPositive);
+  if (scene.time_step > kLongestTimeStep) map.fail("time_step", "at most 1e6 s");
   bool tank_usable = false;
   if (root.IsMap()) map.require("tank", "a map with size and cell_width");
   if (map.has("tank")) tank_usable = readTank(map.get("tank"), scene.tank, violations);

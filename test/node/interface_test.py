@@ -5,6 +5,7 @@ import math
 import os
 import struct
 import sys
+import time
 import unittest
 
 import rosgraph
@@ -121,8 +122,8 @@ class InterfaceTest(unittest.TestCase):
         clock = [message.clock.to_sec() for message in collectors['clock'].messages]
         self.assertEqual(clock, sorted(clock))
         # Repeated while time stands still, and rospy itself may skip some; each is the time of a step.
-        for time in clock:
-            self.assertAlmostEqual(time, round(time / STEP_SEC) * STEP_SEC, places=6)
+        for stamp in clock:
+            self.assertAlmostEqual(stamp, round(stamp / STEP_SEC) * STEP_SEC, places=6)
         self.assertAlmostEqual(clock[-1], 51 * STEP_SEC, places=6)
         self.assertGreater(clock[0], 0.0)
         for name in ('states', 'odom', 'surface', 'statistics'):
@@ -376,6 +377,10 @@ class InterfaceTest(unittest.TestCase):
                  (dict(body_name='ball', wrench=wrench(torque=(0.0, 0.0, NAN)), duration=second), ['wrench.torque']),
                  (dict(body_name='ball', reference_point=Point(NAN, 0.0, 0.0), wrench=good, duration=second),
                   ['reference_point']),
+                 (dict(body_name='ball', reference_point=Point(0.0, HUGE, 0.0), wrench=wrench((HUGE, 0.0, 0.0)),
+                       duration=second), ['wrench', '"ball"', '-inf', 'expected finite']),
+                 (dict(body_name='ball', wrench=good, start_time=rospy.Time(4294967295), duration=second),
+                  ['start_time: value 4294967295 s', '1000000000 s']),
                  (dict(body_name='ball', wrench=good), ['duration', '0 s'])]
         self.tank.step(3)
         undisturbed = self.tank.state('ball')
@@ -433,6 +438,42 @@ class InterfaceTest(unittest.TestCase):
         self.assertFalse(response.success)
         self.assertIn('"ball"', response.status_message)
         self.tank.step()  # and it goes on
+
+    def values(self, part):
+        """Of all diagnostics so far: message and values of a part, in their order."""
+        return [(status.message, {value.key: value.value for value in status.values})
+                for array in list(self.diagnostics.messages) for status in array.status if status.name.endswith(part)]
+
+    def testDiagnosticsAreNotStampedInTheFuture(self):
+        for _ in range(5):
+            self.tank.step(50)
+            rospy.rostime.wallsleep(0.2)
+            self.diagnostics.clear()
+            self.tank.reset()
+            first = self.diagnostics.waitFor()[0]
+            self.assertLessEqual(first.header.stamp, rospy.Time.from_sec(STEP_SEC))
+
+    def testDiagnosticsGoOnDuringManySteps(self):
+        begin = time.time()
+        self.tank.step(50)
+        # About three periods of a second.
+        steps = int(3.0 * 50 / (time.time() - begin))
+        self.diagnostics.clear()
+        self.tank.reset()
+        self.tank.step(steps)
+        between = {int(values['Step']) for _, values in self.values('Solver')} - {0, steps}
+        self.assertTrue(between)
+
+    def testRealTimeFactorOfARunBeforeThePauseIsForgotten(self):
+        self.diagnostics.clear()
+        self.tank.unpause()
+        waitUntil(lambda: any('of real time' in text for text, _ in self.values('Real-time factor')), 'a speed')
+        self.tank.pause()
+        rospy.rostime.wallsleep(0.2)
+        self.diagnostics.clear()
+        self.tank.unpause()
+        waitUntil(lambda: self.values('Real-time factor'), 'diagnostics')
+        self.assertEqual(self.values('Real-time factor')[0][0], 'Not known yet')
 
     def testDiagnosticsNameTheSolver(self):
         self.tank.step()

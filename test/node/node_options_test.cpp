@@ -80,6 +80,7 @@ TEST(NodeOptions, WrongValuesAreNamedWithWhatWasExpected) {
     expectError(rate, "fast", "value fast");
   }
   expectError("duration", -0.5, ">= 0");
+  expectError("duration", 5e9, "at most 4e9 s");
   expectError("paced", 1, "true or false");
   expectError("scene", 7, "a text");
   expectError("scene", "", "a scene file");
@@ -108,6 +109,13 @@ TEST(NodeOptions, RobotDescriptionsOfAnEarlierRunAreNotErrors) {
   EXPECT_EQ(errorOf(parameters), "");
   parameters["ball"]["colour"] = "red";
   EXPECT_NE(errorOf(parameters).find("~ball"), std::string::npos);
+}
+
+TEST(NodeOptions, NamesOfParametersAreKnown) {
+  for (const char* name : {"scene", "paced", "duration", "diagnostic_period", "robot_description"}) {
+    EXPECT_TRUE(isNodeParameter(name)) << name;
+  }
+  for (const char* name : {"ball", "pace", ""}) EXPECT_FALSE(isNodeParameter(name)) << name;
 }
 
 TEST(NodeTemplate, NamesEveryParameterWithItsDefault) {

@@ -21,7 +21,7 @@ import rostest
 import yaml
 from diagnostic_msgs.msg import DiagnosticArray
 from monolith_tank.msg import Statistics
-from rosgraph_msgs.msg import Log
+from rosgraph_msgs.msg import Clock, Log
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from tank_client import NODE, Collector, Tank, waitUntil
@@ -130,6 +130,33 @@ class ProcessTest(unittest.TestCase):
         code, output = self.finish('_scene:=' + SMALL, '_paced:=false', '_duration:=0.04', '_state_rate:=500.0')
         self.assertEqual(code, 0, output)
         self.assertRegex(output, 'state_rate: 500 Hz.*0.02 s.*50 Hz')
+
+    def testEndOfRosTimeIsNoFailureToStart(self):
+        def longest(scene):
+            del scene['bodies']
+            del scene['liquid']
+            scene['time_step'] = 1e6
+        code, output = self.finish('_scene:=' + self.sceneWith(longest), '_paced:=false')
+        self.assertEqual(code, 1, output)
+        self.assertRegex(output, r'Stopped at 4\.29\S* s: .*expected at most 4294967295 s')
+        self.assertNotIn('Cannot start', output)
+
+    def testStepsEndWithTheRunAndNothingChangesItsEnd(self):
+        clock = Collector('/clock', Clock)
+        process = start('_scene:=' + SMALL, '_start_paused:=true', '_duration:=0.2')
+        try:
+            tank = Tank()
+            response = tank.stepService(steps=20)
+            self.assertFalse(response.success)
+            self.assertIn('after 10 of 20 steps: ~duration is over', response.message)
+            self.assertAlmostEqual(response.time.to_sec(), 0.22)
+            time.sleep(0.1)
+            self.assertRaises(rospy.ServiceException, tank.reset)
+            output, _ = process.communicate(timeout=10)
+        finally:
+            process.kill()
+        self.assertEqual(process.returncode, 0, output)
+        self.assertAlmostEqual(clock.messages[-1].clock.to_sec(), 0.22)
 
     def testInterruptEndsCleanly(self):
         process = start('_scene:=' + SMALL, '_duration:=0')
