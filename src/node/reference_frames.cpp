@@ -18,15 +18,18 @@ constexpr int kMostAncestors = 1000;  // a loop in tf would never end
 ReferenceFrames::ReferenceFrames(const Scene& scene, const std::string& world_frame, const tf2::BufferCore& transforms)
     : world_frame_(world_frame), transforms_(transforms) {
   own_[world_frame] = {-1, Eigen::Isometry3d::Identity()};
+  own_[tankFrame(world_frame)] = {-1, Eigen::Isometry3d(Eigen::Translation3d(scene.tank.origin))};
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const BodyDescription& body = scene.bodies[b];
-    if (body.name == world_frame) {
-      throw SceneError(scene.source + ": body \"" + body.name +
-                       "\": expected another name, this one is ~world_frame's");
-    }
-    own_[body.name] = {static_cast<int>(b), Eigen::Isometry3d::Identity()};
+    const auto add = [&](const std::string& frame, const std::string& of, const Eigen::Isometry3d& X_BF) {
+      if (own_.emplace(frame, OwnFrame{static_cast<int>(b), X_BF}).second) return;
+      throw SceneError(scene.source + ": body \"" + body.name + "\": " + of + " has the tf frame \"" + frame +
+                       "\": expected one of its own, ~world_frame is \"" + world_frame + "\" and the tank's \"" +
+                       tankFrame(world_frame) + "\"");
+    };
+    add(body.name, "the body", Eigen::Isometry3d::Identity());
     for (const LinkFrame& link : body.links) {
-      own_[linkFrame(body.name, link.name)] = {static_cast<int>(b), link.X_BL};
+      add(linkFrame(body.name, link.name), "link \"" + link.name + "\"", link.X_BL);
     }
   }
 }

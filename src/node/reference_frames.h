@@ -1,7 +1,8 @@
 #pragma once
-// Poses of tf frames in the world at the moment of the simulation's state. The node's own frames - the world, each body
-// ("<body>") and each of its links ("<body>/<link>") - come from the state itself. Any other frame is followed through
-// tf to the nearest of those, so that a frame fixed to a body is exactly where the body is.
+// Poses of tf frames in the world at the moment of the simulation's state. The node's own frames - the world, the
+// tank's corner ("<world>/tank"), each body ("<body>") and each of its links ("<body>/<link>") - come from the state
+// itself. Any other frame is followed through tf to the nearest of those, so that a frame fixed to a body is exactly
+// where the body is.
 
 #include <tf2/buffer_core.h>
 
@@ -16,7 +17,8 @@ namespace monolith {
 
 class ReferenceFrames {
  public:
-  // Throws SceneError if a body has the name of the world frame. `transforms` must outlive this.
+  // Throws SceneError if one of its own frames has the name of another, such as the world's. `transforms` must outlive
+  // this.
   ReferenceFrames(const Scene& scene, const std::string& world_frame, const tf2::BufferCore& transforms);
 
   // X_WF. Throws RequestError if the frame is not connected to the world, naming the nearest known frame.
@@ -24,6 +26,7 @@ class ReferenceFrames {
 
   const std::string& worldFrame() const { return world_frame_; }
   static std::string linkFrame(const std::string& body, const std::string& link) { return body + "/" + link; }
+  static std::string tankFrame(const std::string& world_frame) { return world_frame + "/tank"; }
 
  private:
   struct OwnFrame {

@@ -1,5 +1,6 @@
 #include "node/scene_lookup.h"
 
+#include <ros/exception.h>
 #include <ros/package.h>
 #include <ros/param.h>
 
@@ -7,6 +8,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "node/node_options.h"
 #include "scene/nearest_word.h"
 
 namespace monolith {
@@ -50,7 +52,18 @@ std::string findSceneFile(const std::string& scene) {
 SceneResolver makeRosResolver() {
   SceneResolver resolver;
   resolver.package_path = [](const std::string& package) { return ros::package::getPath(package); };
-  resolver.parameter = [](const std::string& parameter, std::string& text) { return ros::param::get(parameter, text); };
+  resolver.parameter = [](const std::string& parameter, std::string& text) {
+    try {
+      return ros::param::get(parameter, text);
+    } catch (const ros::Exception&) {  // no name of a parameter
+      return false;
+    }
+  };
+  resolver.name_conflict = [](const std::string& name) -> std::string {
+    if (!isNodeParameter(name)) return "";
+    return "another name, ~" + name + " is a parameter of the node and ~" + name +
+           "/robot_description would take its place";
+  };
   return resolver;
 }
 

@@ -75,7 +75,7 @@ void StatePublisher::publishConstant() {
   // The tank's corner. It also makes the world frame known to tf while nothing moves.
   geometry_msgs::TransformStamped corner;
   corner.header = header();
-  corner.child_frame_id = ReferenceFrames::linkFrame(world_frame_, "tank");
+  corner.child_frame_id = ReferenceFrames::tankFrame(world_frame_);
   corner.transform.translation = toVector(simulation_.scene().tank.origin);
   corner.transform.rotation.w = 1.0;
   frames.transforms.push_back(corner);

@@ -25,7 +25,7 @@ bool validName(const std::string& name) {
   return true;
 }
 
-void readName(const YamlMap& map, BodyDescription& body) {
+void readName(const YamlMap& map, const SceneResolver& resolver, BodyDescription& body) {
   map.require("name", "a name for topics and tf");
   map.read("name", body.name);
   if (body.name.empty()) return;
@@ -35,6 +35,9 @@ void readName(const YamlMap& map, BodyDescription& body) {
     map.fail("name", "another name, \"world\" is the tank's own frame");
   } else if (body.name == kWallsName) {
     map.fail("name", "another name, \"walls\" is the tank's own in contact.pairs");
+  } else if (const std::string expected = resolver.name_conflict ? resolver.name_conflict(body.name) : "";
+             !expected.empty()) {
+    map.fail("name", expected);
   }
 }
 
@@ -131,7 +134,7 @@ BodyDescription readBody(const YAML::Node& node, int index, const std::string& f
                     {"name", "urdf", "urdf_parameter", "position", "orientation", "velocity", "angular_velocity",
                      "motion", "prescribed", "material"},
                     violations);
-  readName(map, body);
+  readName(map, resolver, body);
   readUrdf(map, folder, resolver, node, body, violations);
   Vector3d position = Vector3d::Zero();
   map.read<3>("position", position);

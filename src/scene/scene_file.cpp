@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <vector>
 
 #include "scene/resource_path.h"
 #include "scene/scene_sections.h"
@@ -21,7 +22,13 @@ YAML::Node parseYaml(const std::string& yaml_file) {
   }
   const std::string text = readTextFile(yaml_file);
   try {
-    return YAML::Load(text);
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    for (std::size_t i = 1; i < documents.size(); ++i) {
+      if (documents[i].IsNull()) continue;  // after a last ---
+      throw SceneError(yaml_file + ":" + std::to_string(documents[i].Mark().line + 1) +
+                       ": a further YAML document: expected one, without a line --- within it");
+    }
+    return documents.empty() ? YAML::Node() : documents.front();
   } catch (const YAML::Exception& exception) {
     throw SceneError(yaml_file + ":" + std::to_string(exception.mark.line + 1) + ": malformed YAML at column " +
                      std::to_string(exception.mark.column + 1) + ": " + exception.msg + ": expected valid YAML");
@@ -68,6 +75,9 @@ Scene loadScene(const std::string& yaml_file, const SceneResolver& resolver) {
   if (root.IsMap()) map.require("tank", "a map with size and cell_width");
   if (map.has("tank")) tank_usable = readTank(map.get("tank"), scene.tank, violations);
   if (map.has("liquid")) readLiquid(map.get("liquid"), scene.tank, tank_usable, scene.liquid, violations);
+  // A dry tank has no cells.
+  const bool dry = scene.liquid.fill_level <= 0.0 && scene.liquid.boxes.empty();
+  if (tank_usable && !dry) checkMemory(map.get("tank"), scene.tank, violations);
   if (map.has("solver")) readSolver(map.get("solver"), scene.solver, violations);
   const std::string folder = fs::absolute(yaml_file).parent_path().string();
   readBodies(map, folder, resolver, tank_usable, scene, violations);

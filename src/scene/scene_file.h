@@ -15,6 +15,8 @@ struct SceneResolver {
   std::function<std::string(const std::string& package)> package_path;
   // ROS parameter -> URDF text; returns false if there is none.
   std::function<bool(const std::string& parameter, std::string& text)> parameter;
+  // What was expected instead of this name of a body; returns "" if it is as good as any.
+  std::function<std::string(const std::string& name)> name_conflict;
 };
 
 // Throws SceneError naming file, line, element, value and what was expected; all violations at once.

@@ -41,19 +41,6 @@ bool fitCells(const YamlMap& map, TankDescription& tank) {
   return fits;
 }
 
-bool fitsMemory(const YamlMap& map, const TankDescription& tank) {
-  const double cells = (tank.size / tank.cell_width).array().round().prod();
-  const double gigabyte = 1e9;
-  const double needed = cells * kBytesPerCell / gigabyte;
-  const double present = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGE_SIZE) / gigabyte;
-  if (needed <= present) return true;
-  std::ostringstream text;
-  text << "a tank that fits in memory: " << cells << " cells need about " << needed << " GB, this machine has "
-       << present << " GB";
-  map.fail("cell_width", text.str());
-  return false;
-}
-
 }  // namespace
 
 bool readTank(const YAML::Node& node, TankDescription& tank, Violations& violations) {
@@ -64,10 +51,22 @@ bool readTank(const YAML::Node& node, TankDescription& tank, Violations& violati
   map.read<3>("size", tank.size, Range::kPositive);
   map.read("cell_width", tank.cell_width, Range::kPositive);
   map.read("periodic", tank.periodic);
-  if (violations.count() > violations_before || !fitCells(map, tank) || !fitsMemory(map, tank)) return false;
+  if (violations.count() > violations_before || !fitCells(map, tank)) return false;
   tank.origin = Vector3d(-0.5 * tank.size.x(), -0.5 * tank.size.y(), 0.0);
   map.read<3>("origin", tank.origin);
   return violations.count() == violations_before;
+}
+
+void checkMemory(const YAML::Node& node, const TankDescription& tank, Violations& violations) {
+  const double cells = (tank.size / tank.cell_width).array().round().prod();
+  const double gigabyte = 1e9;
+  const double needed = cells * kBytesPerCell / gigabyte;
+  const double present = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGE_SIZE) / gigabyte;
+  if (needed <= present) return;
+  std::ostringstream text;
+  text << "tank.cell_width: value " << shownValue(node["cell_width"]) << ": expected a tank that fits in memory: "
+       << cells << " cells need about " << needed << " GB, this machine has " << present << " GB";
+  violations.add(node["cell_width"], text.str());
 }
 
 void readLiquid(const YAML::Node& node, const TankDescription& tank, bool tank_usable, LiquidDescription& liquid,

@@ -100,6 +100,24 @@ class ProcessTest(unittest.TestCase):
     def testBodyNamedAsTheWorldFrame(self):
         self.refused(['ball', '~world_frame'], '_scene:=' + SMALL, '_world_frame:=ball')
 
+    def testWorldFrameNamedAsALinksFrame(self):
+        self.refused(['small.yaml', 'body "ball"', 'link "core"', '"ball/core"', '~world_frame'], '_scene:=' + SMALL,
+                     '_world_frame:=ball/core')
+
+    def testBodyNamedAsAParameter(self):
+        file = self.sceneWith(lambda scene: scene['bodies'][1].update(name='paced'))
+        self.refused([file + ':', 'bodies[1].name: value paced: expected another name', '~paced/robot_description'],
+                     '_scene:=' + file)
+
+    def testNoNameOfAParameterIsOneOfSeveralViolations(self):
+        def change(scene):
+            del scene['bodies'][0]['urdf']
+            scene['bodies'][0]['urdf_parameter'] = 'foo bar'
+            scene['liquid']['density'] = -1.0
+        file = self.sceneWith(change)
+        self.refused([file + ':', 'bodies[0].urdf_parameter: value foo bar: expected the name of a ROS parameter',
+                      'liquid.density'], '_scene:=' + file)
+
     # --- parameters ---
 
     def testNoScene(self):

@@ -241,5 +241,26 @@ TEST_F(ReferenceFramesTest, BodyMayNotHaveTheNameOfTheWorldFrame) {
   EXPECT_THROW(ReferenceFrames(scene_, "probe", buffer_), SceneError);
 }
 
+TEST_F(ReferenceFramesTest, OwnFramesMayNotHaveTheSameName) {
+  scene_.bodies[0].links.push_back({"deck/tank", Isometry3d::Identity()});
+  for (const std::string world : {"probe/tip", "probe/deck"}) {
+    try {
+      const ReferenceFrames frames(scene_, world, buffer_);
+      ADD_FAILURE() << world;
+    } catch (const SceneError& error) {
+      const std::string text = error.what();
+      for (const std::string& part : {std::string("\"probe\""), "~world_frame is \"" + world + "\""}) {
+        EXPECT_NE(text.find(part), std::string::npos) << part << " in: " << text;
+      }
+    }
+  }
+}
+
+TEST_F(ReferenceFramesTest, TheTanksCornerIsKnown) {
+  scene_.tank.origin = Vector3d(-0.5, -0.4, 0.1);
+  const ReferenceFrames frames(scene_, "world", buffer_);
+  EXPECT_TRUE(frames.pose("world/tank", bodies_).translation().isApprox(scene_.tank.origin));
+}
+
 }  // namespace
 }  // namespace monolith

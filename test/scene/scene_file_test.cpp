@@ -161,7 +161,8 @@ TEST_F(SceneFile, EachViolationNamesLineKeyValueAndExpectation) {
       {tank("  size: [1, 1]\n  cell_width: 0.1\n"), {"value [1, 1]"}},
       {tank("  size: [1, 1.05, 1]\n  cell_width: 0.1\n"), {"along y", "1 or 1.1 m"}},
       {tank("  size: [1, 1, 0.3]\n  cell_width: 0.1\n"), {"at least 4 cells", "along z", "not 3"}},
-      {tank("  size: [100, 100, 100]\n  cell_width: 0.001\n"), {"1e+15 cells need about 1.7e+09 GB, this machine has"}},
+      {tank("  size: [100, 100, 100]\n  cell_width: 0.001\n") + "liquid: {fill_level: 1}\n",
+       {"scene.yaml:3: tank.cell_width: value 0.001: expected", "1e+15 cells need about 1.7e+09 GB, this machine has"}},
       {tank("  size: [1, 1, 1]\n  cell_width: 0.1\n  periodic: true\n"), {"tank.periodic: value true"}},
       {tank("  size: [1, 1, 1]\n  cell_with: 0.1\n"), {"scene.yaml:3: tank.cell_with: unknown key", "\"cell_width\""}},
       {kTank + "liqid: {}\n", {"scene.yaml:2: liqid: unknown key", "\"liquid\""}},
@@ -175,6 +176,8 @@ TEST_F(SceneFile, EachViolationNamesLineKeyValueAndExpectation) {
       {liquid("boxes: [{min: [0, 0, 0.2], max: [0.1, 0.1, 0.1]}]"), {"liquid.boxes[0].max", "more than min"}},
       {liquid("boxes: [{min: [0, 0, 0], max: [0.6, 0.1, 0.1]}]"), {"liquid.boxes[0]", "inside the tank"}},
       {kTank + "time_step: 0\n", {"scene.yaml:2: time_step: value 0"}},
+      {kTank + "time_step: 2e9\n", {"scene.yaml:2: time_step: value 2e9: expected at most 1e6 s"}},
+      {kTank + "---\n" + kTank, {"scene.yaml:3: a further YAML document"}},
       {kTank + "gravity: -9.81\n", {"gravity: value -9.81: expected a list of 3"}},
       {kTank + "name: []\n", {"name: value []"}},
       {kTank + "solver: {discretisation: fitter}\n", {"solver.discretisation: value fitter", "fitted", "fractions"}},
@@ -274,6 +277,26 @@ TEST_F(SceneFile, ResolverFindsPackagesAndParameters) {
   for (const BodyDescription& body : scene.bodies) EXPECT_EQ(body.mass, 2.0);
   EXPECT_EQ(scene.bodies[0].source, folder_.path() + "/ball.urdf");
   EXPECT_NE(scene.bodies[1].source.find("/robot_description"), std::string::npos);
+}
+
+TEST_F(SceneFile, ADryTankNeedsNoMemory) {
+  EXPECT_EQ(errorOf("tank: {size: [100, 100, 100], cell_width: 0.001}\n"), "no error");
+  EXPECT_NE(errorOf("tank: {size: [100, 100, 100], cell_width: 0.001}\n"
+                    "liquid: {boxes: [{min: [0, 0, 0], max: [1, 1, 1]}]}\n").find("memory"), std::string::npos);
+}
+
+TEST_F(SceneFile, OneDocumentMayBeMarkedAsSuch) {
+  EXPECT_EQ(errorOf("---\n" + kTank + "...\n"), "no error");
+  EXPECT_EQ(errorOf(kTank + "---\n"), "no error");
+}
+
+TEST_F(SceneFile, NamesInConflictWithOthersAreRefused) {
+  SceneResolver resolver;
+  resolver.name_conflict = [](const std::string& name) -> std::string { return name == "ball" ? "no ball" : ""; };
+  EXPECT_NE(errorOf(kTank + kBody, resolver).find("scene.yaml:3: bodies[0].name: value ball: expected no ball"),
+            std::string::npos) << errorOf(kTank + kBody, resolver);
+  resolver.name_conflict = [](const std::string&) { return std::string(); };
+  EXPECT_EQ(errorOf(kTank + kBody, resolver), "no error");
 }
 
 TEST_F(SceneFile, SizesWithinRoundOffOfWholeCellsBecomeExact) {
