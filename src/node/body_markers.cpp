@@ -96,6 +96,13 @@ void setShape(const Shape& shape, Marker& marker) {
   }
 }
 
+// A material that only has a texture, which markers cannot show, has the colour that the parser begins with.
+bool hasColour(const urdf::MaterialSharedPtr& material) {
+  if (!material) return false;
+  const urdf::Color& c = material->color;
+  return material->texture_filename.empty() || c.r != 0.0f || c.g != 0.0f || c.b != 0.0f || c.a != 1.0f;
+}
+
 std::vector<BodyMarker> visualMarkers(const BodyDescription& body, int index, std::vector<std::string>& warnings) {
   std::vector<BodyMarker> markers;
   const urdf::ModelInterfaceSharedPtr model = parseUrdf(body.urdf_xml, body.source);
@@ -107,14 +114,15 @@ std::vector<BodyMarker> visualMarkers(const BodyDescription& body, int index, st
       BodyMarker out;
       out.X_BV = frame.X_BL * toIsometry(visual->origin);
       out.marker.color = paletteColour(index);
-      if (visual->material) {
+      const bool has_colour = hasColour(visual->material);
+      if (has_colour) {
         const urdf::Color& colour = visual->material->color;
         out.marker.color.r = colour.r;
         out.marker.color.g = colour.g;
         out.marker.color.b = colour.b;
         out.marker.color.a = colour.a;
       }
-      if (setGeometry(*visual->geometry, visual->material != nullptr, out.marker)) {
+      if (setGeometry(*visual->geometry, has_colour, out.marker)) {
         markers.push_back(out);
       } else {
         warnings.push_back(body.source + ": link \"" + frame.name +

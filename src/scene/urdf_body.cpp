@@ -9,6 +9,7 @@
 #include "scene/mesh_file.h"
 #include "scene/resource_path.h"
 #include "scene/urdf_parser.h"
+#include "scene/xml_text.h"
 
 namespace monolith {
 namespace {
@@ -162,22 +163,28 @@ class BodyReader {
     if (const auto* mesh = dynamic_cast<const urdf::Mesh*>(geometry.get())) mesh_files_.insert(mesh->filename);
   }
 
+  // Of each attribute filename="..." that names one of the meshes by a relative path.
   std::string withAbsoluteMeshes() const {
-    std::string xml = urdf_.xml;
-    for (const std::string& file : mesh_files_) {
-      if (file.find("://") != std::string::npos || urdf_.folder.empty()) continue;
+    const std::string& old = urdf_.xml;
+    if (urdf_.folder.empty()) return old;
+    const std::string attribute = "filename", blanks = " \t\r\n";
+    std::string xml;
+    std::size_t copied = 0;
+    for (std::size_t at = old.find(attribute); at != std::string::npos; at = old.find(attribute, at + 1)) {
+      const std::size_t equals = old.find_first_not_of(blanks, at + attribute.size());
+      if (equals == std::string::npos || old[equals] != '=') continue;
+      const std::size_t quote = old.find_first_not_of(blanks, equals + 1);
+      if (quote == std::string::npos || (old[quote] != '"' && old[quote] != '\'')) continue;
+      const std::size_t end = old.find(old[quote], quote + 1);
+      if (end == std::string::npos) break;
+      const std::string file = unescapedXml(old.substr(quote + 1, end - quote - 1));
+      if (!mesh_files_.count(file) || file.find("://") != std::string::npos) continue;
       const std::filesystem::path path =
           std::filesystem::absolute(std::filesystem::path(urdf_.folder) / file).lexically_normal();
-      for (const char quote : {'"', '\''}) {
-        const std::string relative = quote + file + quote;
-        const std::string absolute = quote + ("file://" + path.string()) + quote;
-        for (std::size_t at = xml.find(relative); at != std::string::npos;
-             at = xml.find(relative, at + absolute.size())) {
-          xml.replace(at, relative.size(), absolute);
-        }
-      }
+      xml += old.substr(copied, quote + 1 - copied) + escapedXml("file://" + path.string());
+      copied = end;
     }
-    return xml;
+    return xml + old.substr(copied);
   }
 
   static bool positive(const Vector3d& v) { return v.allFinite() && (v.array() > 0.0).all(); }

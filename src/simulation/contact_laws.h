@@ -14,7 +14,6 @@ class ContactLaws {
   // body indices, or Contact::kWall.
   const ContactLaw& of(int body_a, int body_b) const;
   std::vector<ContactLaw> of(const std::vector<Contact>& contacts) const;
-  bool friction() const;
 
  private:
   std::size_t bodies_ = 0;

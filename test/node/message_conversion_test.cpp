@@ -138,6 +138,22 @@ TEST(BodyMarkers, ShowTheVisualsWithTheirColoursAndPlaces) {
   EXPECT_NE(markers[0].marker.id, markers[1].marker.id);
 }
 
+TEST(BodyMarkers, AMaterialWithATextureAloneHasNoColour) {
+  const std::string material = "<material name='m'><texture filename='wood.png'/></material></visual>";
+  std::vector<std::string> warnings;
+  const auto markers = makeBodyMarkers(
+      described("<visual><geometry><sphere radius='0.1'/></geometry>" + material +
+                "<visual><geometry><mesh filename='package://p/m.dae'/></geometry>" + material +
+                "<visual><geometry><sphere radius='0.1'/></geometry>"
+                "<material name='black'><color rgba='0 0 0 1'/></material></visual>"),
+      3, warnings);
+  ASSERT_EQ(markers.size(), 3u);
+  EXPECT_EQ(markers[0].marker.color, makeBodyMarkers(described(""), 3, warnings)[0].marker.color);
+  EXPECT_GT(markers[0].marker.color.r, 0.0f);
+  EXPECT_TRUE(markers[1].marker.mesh_use_embedded_materials);
+  EXPECT_EQ(markers[2].marker.color.r, 0.0f);
+}
+
 TEST(BodyMarkers, WithoutVisualsShowTheCollisionShapes) {
   std::vector<std::string> warnings;
   const auto markers = makeBodyMarkers(described(""), 3, warnings);

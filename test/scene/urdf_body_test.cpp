@@ -167,5 +167,23 @@ TEST(UrdfBody, RelativeMeshPathsBecomeAbsoluteInTheText) {
   EXPECT_EQ(read(result.body.urdf_xml).errors, "");
 }
 
+TEST(UrdfBody, MeshPathsMayHaveCharactersThatXmlEscapes) {
+  const TemporaryFolder folder;
+  const std::string name = "salt & 'pepper' <fine> \"1\"";
+  folder.write(name + "/t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  const std::string escaped = "salt &amp; &apos;pepper&#39; &lt;fine> &quot;1&#x22;";
+  // A link may be called as the file is.
+  for (const std::string& file : {std::string("t.obj"), "../" + escaped + "/t.obj"}) {
+    const std::string collision =
+        "<collision><geometry><mesh filename = '" + file + "' scale=\"0.1 0.1 0.1\"/></geometry></collision>";
+    const Result result = read(robot(link("t.obj", kInertial + collision)), folder.path() + "/" + name);
+    ASSERT_EQ(result.errors, "") << file;
+    const Result again = read(result.body.urdf_xml);
+    EXPECT_EQ(again.errors, "") << result.body.urdf_xml;
+    EXPECT_EQ(again.body.shapes.size(), 1u);
+    EXPECT_EQ(again.body.links[0].name, "t.obj");
+  }
+}
+
 }  // namespace
 }  // namespace monolith
