@@ -43,9 +43,9 @@ class WrenchCommands {
   // X_WF of a frame; throws RequestError.
   using FramePose = std::function<Eigen::Isometry3d(const std::string& frame)>;
 
-  // The sum for each body in the step that begins at `time`, always finite. Commands that are over are forgotten. So are
-  // those whose frame is no longer known, or that with those before them are too large for a number: a line for each is
-  // appended to `lost`.
+  // The sum for each body in the step that begins at `time`, always finite. Commands that are over are forgotten. So
+  // are those whose frame is no longer known, or that with those before them are too large for a number: a line for
+  // each is appended to `lost`.
   std::vector<Wrench> evaluate(double time, const std::vector<RigidBody>& bodies, const FramePose& frame_pose,
                                std::vector<std::string>& lost);
   // The step that was evaluated last was committed: only now have its commands acted.

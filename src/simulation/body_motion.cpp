@@ -177,7 +177,8 @@ double reachOut(const RigidBody& body, const TankWalls& walls, double enough, st
 
 std::string intrusion(const std::string& what, double depth, double allowed) {
   std::ostringstream text;
-  text << what << " by " << depth << " m: expected at most half a cell, " << allowed << " m; is what acts on it too strong for the time step, or has it no room?";
+  text << what << " by " << depth << " m: expected at most half a cell, " << allowed
+       << " m; is what acts on it too strong for the time step, or has it no room?";
   return text.str();
 }
 
