@@ -184,6 +184,10 @@ class InterfaceTest(unittest.TestCase):
 
     def testStatisticsBeforeTheFirstStepAreOfTheState(self):
         statistics = Collector(NODE + '/statistics', Statistics)
+        statistics.waitFor()
+        rospy.rostime.wallsleep(0.3)  # what is latched, and what is still on its way
+        statistics.clear()
+        self.tank.reset()
         initial = statistics.waitFor()[-1]
         self.assertEqual((initial.status, initial.committed, initial.step), ('not run', False, 0))
         self.assertTrue(initial.liquid and initial.viscosity and initial.free_surface)
@@ -458,8 +462,9 @@ class InterfaceTest(unittest.TestCase):
         self.tank.step(50)
         # About three periods of a second.
         steps = int(3.0 * 50 / (time.time() - begin))
-        self.diagnostics.clear()
         self.tank.reset()
+        rospy.rostime.wallsleep(0.3)  # what is still on its way
+        self.diagnostics.clear()
         self.tank.step(steps)
         between = {int(values['Step']) for _, values in self.values('Solver')} - {0, steps}
         self.assertTrue(between)
