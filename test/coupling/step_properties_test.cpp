@@ -70,8 +70,7 @@ double divergence(const RandomStep& step, StepVector x) {
 }
 
 // The largest divergence is below what the solve's tolerance, relative to the whole right side, lets pass.
-void expectNoDivergence(const RandomStep& step, const StepVector& x, const Eigen::VectorXd& r, double tolerance,
-                        const CoupledReport& report) {
+void expectNoDivergence(const RandomStep& step, const StepVector& x, const Eigen::VectorXd& r, double tolerance) {
   StepVector b = step.rhs;
   if (r.size() > 0) {
     StepVector contact = step.start();
@@ -79,8 +78,7 @@ void expectNoDivergence(const RandomStep& step, const StepVector& x, const Eigen
     for (std::size_t i = 0; i < b.bodies.size(); ++i) b.bodies[i] += contact.bodies[i];
   }
   const double allowed = tolerance * stepNorm(step.problem, b) / step.grid.h;
-  EXPECT_LE(report.divergence, allowed);
-  EXPECT_NEAR(divergence(step, x), report.divergence, 1e-3 * allowed);
+  EXPECT_LE(divergence(step, x), allowed);
   StepVector before = step.start();
   before.velocity = step.free_velocity;
   step.problem.toUnknowns(before.velocity);
@@ -187,7 +185,7 @@ TEST_P(StepProperties, EnergyNeverGrowsAndContactsObeyTheirLaw) {
     const double before = step.energy(unknowns, step.free_twists);
     EXPECT_LE(step.energy(x.velocity, x.bodies), before * (1.0 + 1e-6));
     const Eigen::Index m = step.rows.count();
-    expectNoDivergence(step, x, r, options.tolerance, report);
+    expectNoDivergence(step, x, r, options.tolerance);
     if (m == 0) continue;
     ++with_contacts;
     const Eigen::VectorXd w = step.rows.J * gatherBodies(step.problem, x.bodies) + step.rows.bias;
