@@ -38,14 +38,12 @@ class Collector {
     return most;
   }
   void add(std::ptrdiff_t place, int body, const Vector6d& coefficient) {
-    std::uint64_t key = static_cast<std::uint64_t>(place) * 0x9E3779B97F4A7C15u + static_cast<std::uint64_t>(body);
-    key ^= key >> 32;
-    const std::int32_t i =
-        table_.find(key, [&](std::int32_t k) { return sums_[k].place == place && sums_[k].body == body; });
-    if (i >= 0) {
+    const std::uint64_t key = static_cast<std::uint64_t>(place) * 0x9E3779B97F4A7C15u + static_cast<std::uint64_t>(body);
+    const std::int32_t i = table_.number(
+        key ^ (key >> 32), [&](std::int32_t k) { return sums_[k].place == place && sums_[k].body == body; });
+    if (i < static_cast<std::int32_t>(sums_.size())) {
       sums_[i].coefficient += coefficient;
     } else {
-      table_.add(key);
       sums_.push_back({static_cast<std::int32_t>(place), body, coefficient});
     }
   }

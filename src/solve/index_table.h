@@ -1,5 +1,5 @@
 #pragma once
-// Numbers things in the order in which they are added, by hash and open addressing: nothing is allocated for each of
+// Numbers things in the order in which they first come, by hash and open addressing: nothing is allocated for each of
 // them, unlike in std::unordered_map.
 
 #include <cstdint>
@@ -9,48 +9,27 @@ namespace monolith {
 
 class IndexTable {
  public:
-  // For about so many things; it grows if there are more.
-  explicit IndexTable(std::size_t expected = 0) {
-    std::size_t size = kFirstSlots;
-    while (size < 2 * expected) size *= 2;
+  // For that many different things at most.
+  explicit IndexTable(std::size_t most) {
+    std::size_t size = 64;
+    while (size < 2 * most) size *= 2;
     slots_.assign(size, -1);
   }
 
-  // The number of the thing of this hash for which isSame(number) holds; -1: there is none.
+  // The number of the one before for which isSame(number) holds, or count() if there is none: then it is a new one.
   template <class IsSame>
-  std::int32_t find(std::uint64_t hash, IsSame&& isSame) const {
-    for (std::size_t slot = hash & mask(); slots_[slot] >= 0; slot = (slot + 1) & mask()) {
-      const std::int32_t number = slots_[slot];
-      if (hashes_[number] == hash && isSame(number)) return number;
-    }
-    return -1;
+  std::int32_t number(std::uint64_t hash, IsSame&& isSame) {
+    const std::size_t mask = slots_.size() - 1;
+    std::size_t slot = hash & mask;
+    while (slots_[slot] >= 0 && !isSame(slots_[slot])) slot = (slot + 1) & mask;
+    if (slots_[slot] < 0) slots_[slot] = count_++;
+    return slots_[slot];
   }
-
-  // Numbers one more.
-  void add(std::uint64_t hash) {
-    hashes_.push_back(hash);
-    if (2 * hashes_.size() <= slots_.size()) {
-      place(count() - 1);
-      return;
-    }
-    slots_.assign(2 * slots_.size(), -1);
-    for (std::int32_t i = 0; i < count(); ++i) place(i);
-  }
-
-  std::int32_t count() const { return static_cast<std::int32_t>(hashes_.size()); }
+  std::int32_t count() const { return count_; }
 
  private:
-  static constexpr std::size_t kFirstSlots = 64;
-
-  std::size_t mask() const { return slots_.size() - 1; }
-  void place(std::int32_t number) {
-    std::size_t slot = hashes_[number] & mask();
-    while (slots_[slot] >= 0) slot = (slot + 1) & mask();
-    slots_[slot] = number;
-  }
-
   std::vector<std::int32_t> slots_;  // -1: free
-  std::vector<std::uint64_t> hashes_;
+  std::int32_t count_ = 0;
 };
 
 }  // namespace monolith

@@ -4,8 +4,7 @@
 // lies along walls - share one pattern, so that the coefficients of a level stay in the first cache and only the fields
 // are streamed. Blocks without any unknown are left out; lanes without one have coefficients of zero.
 //
-// Coefficient q of lane i of pattern p: values[(p * Count + q) * kLanes + i]. A pattern keeps its number as long as
-// there are blocks of it: of rows that are steady nothing is written but the blocks.
+// Coefficient q of lane i of pattern p: values[(p * Count + q) * kLanes + i].
 
 #include <omp.h>
 
@@ -14,7 +13,6 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -25,8 +23,8 @@
 
 namespace monolith {
 
-// Fewer blocks, or patterns, than this are not worth waking a second thread for.
-constexpr std::ptrdiff_t kBlocksWorthSharing = 500, kPatternsWorthSharing = 200;
+// Fewer blocks than this are not worth waking a second thread for.
+constexpr std::ptrdiff_t kBlocksWorthSharing = 500;
 
 template <class Real, int Count>
 class StencilBlocks {
@@ -82,28 +80,24 @@ class StencilBlocks {
 
   std::size_t blocks() const { return blocks_.size(); }
   std::size_t lanes() const { return blocks_.size() * kLanes; }
-  std::size_t patterns() const { return hash_.size(); }
+  std::size_t patterns() const { return values_.size() / (Count * kLanes); }
 
-  // The same in another precision; cheap if it was made from the build before the last.
-  template <class From>
-  void convert(const StencilBlocks<From, Count>& from) {
-    const bool follows = !from.anew_ && build_ + 1 == from.build_;
-    blocks_.resize(from.blocks_.size());
-    std::memcpy(blocks_.data(), from.blocks_.data(), blocks_.size() * sizeof(Block));
-    segments_.clear();
-    for (const auto& s : from.segments_) segments_.push_back({s.component, s.begin, s.end});
-    lost_.clear();
-    for (const auto& lost : from.lost_) lost_.push_back({lost.component, lost.place});
-    lattice_ = from.lattice_;
-    anew_ = from.anew_;
-    build_ = from.build_;
-    values_.conservativeResize(from.values_.size());
-    const auto take = [&](std::ptrdiff_t p) {
-      for (std::size_t i = p * kSize; i < (p + 1) * kSize; ++i) values_[i] = static_cast<Real>(from.values_[i]);
-    };
-    const auto count = static_cast<std::ptrdiff_t>(follows ? from.fresh_.size() : from.patterns());
-#pragma omp parallel for schedule(static) if (count >= kPatternsWorthSharing)
-    for (std::ptrdiff_t p = 0; p < count; ++p) take(follows ? from.fresh_[p] : p);
+  // The same in another precision.
+  template <class To>
+  StencilBlocks<To, Count> converted() const {
+    StencilBlocks<To, Count> out;
+    out.blocks_.resize(blocks_.size());
+    std::memcpy(out.blocks_.data(), blocks_.data(), blocks_.size() * sizeof(Block));
+    out.segments_.resize(segments_.size());
+    std::memcpy(out.segments_.data(), segments_.data(), segments_.size() * sizeof(Segment));
+    out.values_.resize(values_.size());
+#pragma omp parallel for simd schedule(static)
+    for (Eigen::Index i = 0; i < values_.size(); ++i) out.values_[i] = static_cast<To>(values_[i]);
+    out.lattice_ = lattice_;
+    out.anew_ = anew_;
+    out.build_ = build_;
+    for (const Lost& lost : lost_) out.lost_.push_back({lost.component, lost.place});
+    return out;
   }
 
  private:
@@ -118,39 +112,38 @@ class StencilBlocks {
   };
   static constexpr std::size_t kSize = Count * kLanes;
   static constexpr long kNoGeneration = -2;
-  static constexpr std::int32_t kNone = std::numeric_limits<std::int32_t>::min();  // of patterns
   using Values = Eigen::Array<Real, Eigen::Dynamic, 1>;  // resized, it is not written by one thread first
 
-  // What a build makes of one plane of the lattice. Patterns that the last build did not have are numbered from -1
-  // down.
+  // What a build makes of one plane of the lattice.
   struct Plane {
     std::vector<std::vector<Block>> blocks;  // by components
     std::vector<std::int32_t> row_ends;      // blocks up to here, of a component's rows
-    std::vector<Real> values;                // of its new patterns
-    std::vector<std::uint64_t> hash;
-    std::vector<std::int32_t> number;  // of each of them among all
+    std::vector<Real> values;
+    std::vector<std::int32_t> origin;  // of each pattern among the last build's; -1: none
+    std::vector<std::uint64_t> hash;   // of each pattern
+    std::vector<std::int32_t> number;  // of each pattern among all planes'
 
-    std::int32_t add(const Real* pattern, std::uint64_t its_hash) {
+    std::int32_t add(const Real* pattern, std::int32_t from) {
       values.insert(values.end(), pattern, pattern + kSize);
-      hash.push_back(its_hash);
-      return -static_cast<std::int32_t>(hash.size());
+      origin.push_back(from);
+      hash.push_back(hashOf(pattern));
+      return static_cast<std::int32_t>(origin.size()) - 1;
     }
-    const Real* at(std::int32_t pattern) const {
-      return values.data() - (pattern + 1) * static_cast<std::ptrdiff_t>(kSize);
-    }
-    std::int32_t numberOf(std::int32_t pattern) const { return pattern < 0 ? number[-pattern - 1] : pattern; }
   };
   // What the last build has left.
   struct Last {
     std::vector<Block> blocks;
+    Values values;
     std::vector<std::int32_t> row_begin;
+
+    std::size_t patterns() const { return values.size() / kSize; }
   };
   template <class FillRow>
-  void buildPlane(int k, const std::vector<int>& first, FillRow&& fill, const SteadyRows* kept, const IndexTable& known,
-                  const Last& before, Plane& plane) const;
-  void numberPatterns(std::vector<Plane>& planes, IndexTable& known);
-  void merge(std::vector<Plane>& planes, int components);
-  void findLost(int components, const SteadyRows* kept, const Last& before);
+  void buildPlane(int k, const std::vector<int>& first, FillRow&& fill, const SteadyRows* kept, const Last& before,
+                  Plane& plane) const;
+  std::int32_t numberPatterns(std::vector<Plane>& planes, std::size_t patterns_before) const;
+  void merge(std::vector<Plane>& planes, int components, std::size_t patterns_before);
+  void findLost(int components, const Last& before);
 
   // Some of a pattern's words tell most patterns apart; which are the same is seen from all of them.
   static std::uint64_t hashOf(const Real* pattern) {
@@ -180,9 +173,7 @@ class StencilBlocks {
 
   std::vector<Block> blocks_;            // by planes, within them by components, then by rows
   std::vector<Segment> segments_;        // blocks of one component in one plane
-  Values values_;                        // of patterns without blocks, too
-  std::vector<std::uint64_t> hash_;      // of each pattern
-  std::vector<std::int32_t> fresh_;      // patterns that the last build wrote
+  Values values_;
   std::vector<std::int32_t> row_begin_;  // in blocks_, of every row; one more at the end
   long generation_ = kNoGeneration;      // of the steady rows that it was built with
   Lattice lattice_;
@@ -197,27 +188,24 @@ void StencilBlocks<Real, Count>::build(const Lattice& l, const std::vector<int>&
                                        const SteadyRows* steady) {
   const int components = static_cast<int>(first.size());
   anew_ = build_ == 0 || lattice_.n != l.n || lattice_.periodic != l.periodic;
-  const SteadyRows* kept = !anew_ && wouldKeep(steady) ? steady : nullptr;
-  const Last last{std::move(blocks_), std::move(row_begin_)};
+  const bool keeps = !anew_ && wouldKeep(steady);
+  Last last{std::move(blocks_), std::move(values_), std::move(row_begin_)};
   lattice_ = l;
   ++build_;
   generation_ = steady != nullptr ? steady->generation() : kNoGeneration;
-  if (anew_) hash_.clear();
-  IndexTable known(hash_.size());
-  for (const std::uint64_t hash : hash_) known.add(hash);
   std::vector<Plane> planes(l.faceEnd(2));
 #pragma omp parallel for schedule(static, kPlanesInTurn)
-  for (int k = 0; k < l.faceEnd(2); ++k) buildPlane(k, first, fill, kept, known, last, planes[k]);
-  numberPatterns(planes, known);
-  merge(planes, components);
-  findLost(components, kept, last);
+  for (int k = 0; k < l.faceEnd(2); ++k) buildPlane(k, first, fill, keeps ? steady : nullptr, last, planes[k]);
+  const std::size_t patterns_before = last.patterns();
+  last.values.resize(0);
+  merge(planes, components, patterns_before);
+  findLost(components, last);
 }
 
 template <class Real, int Count>
 template <class FillRow>
 void StencilBlocks<Real, Count>::buildPlane(int k, const std::vector<int>& first, FillRow&& fill,
-                                            const SteadyRows* kept, const IndexTable& known, const Last& before,
-                                            Plane& plane) const {
+                                            const SteadyRows* kept, const Last& before, Plane& plane) const {
   const Lattice& l = lattice_;
   const int components = static_cast<int>(first.size());
   const int row_blocks = (l.n[0] + kLanes - 1) / kLanes;
@@ -226,20 +214,26 @@ void StencilBlocks<Real, Count>::buildPlane(int k, const std::vector<int>& first
   Row row;
   for (auto& r : row) r.resize(row_blocks * kLanes);
   std::vector<Real> candidate(kSize);
+  // The last build's patterns, in this plane.
+  std::vector<std::int32_t> here(kept != nullptr ? before.patterns() : 0, -1);
   for (int component = 0; component < components; ++component) {
     std::vector<Block>& blocks = plane.blocks[component];
-    // Patterns of the row that was made last, and of the block before: likely to be the next ones, too.
-    std::vector<std::int32_t> above(row_blocks, kNone);
-    std::int32_t last = kNone;
+    std::vector<std::int32_t> above(row_blocks, -1);  // patterns of the row before
+    std::int32_t last = -1;
     for (int j = 0; j < rows; ++j) {
       if (j > 0) plane.row_ends.push_back(static_cast<std::int32_t>(blocks.size()));
+      const auto start = l.index(first[component], j, k);
       if (kept != nullptr && kept->steady(j, k)) {
         const std::size_t at = (static_cast<std::size_t>(k) * components + component) * rows + j;
-        blocks.insert(blocks.end(), before.blocks.begin() + before.row_begin[at],
-                      before.blocks.begin() + before.row_begin[at + 1]);
+        for (auto b = before.row_begin[at]; b < before.row_begin[at + 1]; ++b) {
+          const Block& block = before.blocks[b];
+          std::int32_t& pattern = here[block.pattern];
+          if (pattern < 0) pattern = plane.add(before.values.data() + block.pattern * kSize, block.pattern);
+          above[(block.place - start) / kLanes] = last = pattern;
+          blocks.push_back({block.place, pattern});
+        }
         continue;
       }
-      const auto start = l.index(first[component], j, k);
       if (!fill(component, start, row_blocks * kLanes, row)) continue;
       // Lanes beyond the row; along a periodic axis they hold images.
       for (int lane = l.faceEnd(0) - first[component]; lane < row_blocks * kLanes; ++lane) {
@@ -250,19 +244,11 @@ void StencilBlocks<Real, Count>::buildPlane(int k, const std::vector<int>& first
           std::copy_n(row[q].data() + block * kLanes, kLanes, candidate.data() + q * kLanes);
         }
         if (std::all_of(candidate.begin(), candidate.end(), [](Real value) { return value == Real(0); })) continue;
-        const auto isIt = [&](std::int32_t pattern) {
-          return same(pattern < 0 ? plane.at(pattern) : values_.data() + pattern * kSize, candidate.data());
+        const auto fits = [&](std::int32_t pattern) {
+          return pattern >= 0 && same(plane.values.data() + pattern * kSize, candidate.data());
         };
-        std::int32_t pattern = kNone;
-        if (above[block] != kNone && isIt(above[block])) {
-          pattern = above[block];
-        } else if (last != kNone && isIt(last)) {
-          pattern = last;
-        } else {
-          const std::uint64_t hash = hashOf(candidate.data());
-          const std::int32_t found = known.find(hash, isIt);
-          pattern = found >= 0 ? found : plane.add(candidate.data(), hash);
-        }
+        std::int32_t pattern = fits(above[block]) ? above[block] : fits(last) ? last : -1;
+        if (pattern < 0) pattern = plane.add(candidate.data(), -1);
         above[block] = last = pattern;
         blocks.push_back({static_cast<std::int32_t>(start + block * kLanes), pattern});
       }
@@ -271,64 +257,51 @@ void StencilBlocks<Real, Count>::buildPlane(int k, const std::vector<int>& first
   }
 }
 
-// New patterns take the places of those that are no longer used, plane by plane, so that they are numbered the same way
-// on any number of threads.
+// One after the other, so that patterns are numbered the same way on any number of threads. Returns how many there are.
 template <class Real, int Count>
-void StencilBlocks<Real, Count>::numberPatterns(std::vector<Plane>& planes, IndexTable& known) {
-  std::vector<char> used(hash_.size(), 0);
-  for (const Plane& plane : planes) {
-    for (const auto& blocks : plane.blocks) {
-      for (const Block& block : blocks) {
-        if (block.pattern >= 0) used[block.pattern] = 1;
-      }
-    }
-  }
-  const auto old = static_cast<std::int32_t>(hash_.size());
-  std::int32_t next = 0;  // no place before it is free
-  fresh_.clear();
-  std::vector<const Real*> source;
-  std::vector<std::int32_t> place;  // of what `known` has numbered from `old` on
+std::int32_t StencilBlocks<Real, Count>::numberPatterns(std::vector<Plane>& planes, std::size_t patterns_before) const {
+  std::size_t most = 0;
+  for (const Plane& plane : planes) most += plane.origin.size();
+  IndexTable table(most);
+  std::vector<std::int32_t> renumbered(patterns_before, -1);
+  std::vector<std::pair<const Real*, std::uint64_t>> known;
   for (Plane& plane : planes) {
-    plane.number.resize(plane.hash.size());
-    for (std::size_t p = 0; p < plane.hash.size(); ++p) {
-      const Real* values = plane.values.data() + p * kSize;
-      const std::uint64_t hash = plane.hash[p];
-      const std::int32_t found =
-          known.find(hash, [&](std::int32_t i) { return i >= old && same(source[i - old], values); });
-      if (found >= 0) {
-        plane.number[p] = place[found - old];
-        continue;
+    plane.number.resize(plane.origin.size());
+    for (std::size_t p = 0; p < plane.origin.size(); ++p) {
+      const std::int32_t origin = plane.origin[p];
+      std::int32_t found = origin < 0 ? -1 : renumbered[origin];
+      if (found < 0) {
+        const Real* values = plane.values.data() + p * kSize;
+        const std::uint64_t hash = plane.hash[p];
+        found =
+            table.number(hash, [&](std::int32_t i) { return known[i].second == hash && same(known[i].first, values); });
+        if (found == static_cast<std::int32_t>(known.size())) known.emplace_back(values, hash);
+        if (origin >= 0) renumbered[origin] = found;
       }
-      known.add(hash);
-      while (next < old && used[next]) ++next;
-      if (next == static_cast<std::int32_t>(hash_.size())) hash_.push_back(hash);
-      hash_[next] = hash;
-      source.push_back(values);
-      place.push_back(next);
-      fresh_.push_back(next);
-      plane.number[p] = next++;
+      plane.number[p] = found;
     }
   }
-  values_.conservativeResize(hash_.size() * kSize);
-  const auto count = static_cast<std::ptrdiff_t>(fresh_.size());
-#pragma omp parallel for schedule(static) if (count >= kPatternsWorthSharing)
-  for (std::ptrdiff_t p = 0; p < count; ++p) std::copy_n(source[p], kSize, values_.data() + fresh_[p] * kSize);
+  return table.count();
 }
 
 // Uses up the planes.
 template <class Real, int Count>
-void StencilBlocks<Real, Count>::merge(std::vector<Plane>& planes, int components) {
+void StencilBlocks<Real, Count>::merge(std::vector<Plane>& planes, int components, std::size_t patterns_before) {
   const int rows = lattice_.faceEnd(1);
-  std::vector<std::int32_t> first_block;
+  values_.resize(numberPatterns(planes, patterns_before) * kSize);
+  // Where each plane's part begins, and which patterns it is the first to have.
+  std::vector<std::int32_t> first_block, first_pattern;
   segments_.clear();
-  std::int32_t count = 0;
+  std::int32_t count = 0, patterns = 0;
   for (const Plane& plane : planes) {
     first_block.push_back(count);
+    first_pattern.push_back(patterns);
     for (int component = 0; component < components; ++component) {
       const auto size = static_cast<std::int32_t>(plane.blocks[component].size());
       if (size > 0) segments_.push_back({component, count, count + size});
       count += size;
     }
+    for (const std::int32_t number : plane.number) patterns = std::max(patterns, number + 1);
   }
   blocks_.resize(count);
   row_begin_.resize(planes.size() * components * rows + 1);
@@ -336,13 +309,17 @@ void StencilBlocks<Real, Count>::merge(std::vector<Plane>& planes, int component
 #pragma omp parallel for schedule(static, kPlanesInTurn)
   for (std::size_t k = 0; k < planes.size(); ++k) {
     Plane& plane = planes[k];
-    std::int32_t begin = first_block[k];
+    std::int32_t begin = first_block[k], next = first_pattern[k];
+    for (std::size_t p = 0; p < plane.number.size(); ++p) {
+      if (plane.number[p] != next) continue;
+      std::copy_n(plane.values.data() + p * kSize, kSize, values_.data() + next * kSize);
+      ++next;
+    }
     for (int component = 0; component < components; ++component) {
       for (int j = 0; j < rows; ++j) {
         row_begin_[(k * components + component) * rows + j + 1] = begin + plane.row_ends[component * rows + j];
       }
-      for (const Block& block : plane.blocks[component])
-        blocks_[begin++] = {block.place, plane.numberOf(block.pattern)};
+      for (const Block& block : plane.blocks[component]) blocks_[begin++] = {block.place, plane.number[block.pattern]};
     }
     plane = {};
   }
@@ -350,19 +327,16 @@ void StencilBlocks<Real, Count>::merge(std::vector<Plane>& planes, int component
 
 // Both builds in the same order: by rows, and along them.
 template <class Real, int Count>
-void StencilBlocks<Real, Count>::findLost(int components, const SteadyRows* kept, const Last& before) {
+void StencilBlocks<Real, Count>::findLost(int components, const Last& before) {
   lost_.clear();
   if (anew_) return;
   const int rows = lattice_.faceEnd(1);
   for (std::size_t at = 0; at + 1 < row_begin_.size(); ++at) {
-    const auto component = static_cast<std::int32_t>(at / rows % components);
-    if (kept != nullptr && kept->steady(static_cast<int>(at % rows), static_cast<int>(at / rows / components)))
-      continue;
     auto now = row_begin_[at];
     for (auto b = before.row_begin[at]; b < before.row_begin[at + 1]; ++b) {
       while (now < row_begin_[at + 1] && blocks_[now].place < before.blocks[b].place) ++now;
       if (now < row_begin_[at + 1] && blocks_[now].place == before.blocks[b].place) continue;
-      lost_.push_back({component, before.blocks[b].place});
+      lost_.push_back({static_cast<std::int32_t>(at / rows % components), before.blocks[b].place});
     }
   }
 }

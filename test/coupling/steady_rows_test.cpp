@@ -57,8 +57,7 @@ struct Built {
       held.set(l, c.has_pressure, c.open, impulse, steady);
       return;
     }
-    FaceBlocks<float> single;
-    single.convert(faces);
+    const FaceBlocks<float> single = faces.converted<float>();
     velocity.set(l, single, transfer, problem.coarse.levels, problem.coarse.levels.size(), problem.coarse.generation(),
                  2);
     permeability.set(problem, at.number, velocity, impulse);

@@ -187,8 +187,7 @@ TEST_P(StokesStencil, SmootherDividesByTheSmoothingDiagonal) {
   FaceField<double> diagonal, effective;
   diagonalAndTies(c, diagonal, effective);
   const FaceField<double> AU = plainMomentum();
-  FaceBlocks<float> single;
-  single.convert(faces);
+  const FaceBlocks<float> single = faces.converted<float>();
   FaceField<float> x, b, d, next;
   for (int a = 0; a < 3; ++a) {
     x[a].assign(U[a].begin(), U[a].end());
