@@ -102,10 +102,12 @@ FreeSurface::FreeSurface(const MacGrid& grid, double fill_height, const std::vec
 
 void FreeSurface::advect(const FaceField<double>& velocity, double dt, double maximum_speed) {
   if (full_ || empty_ || maximum_speed == 0.0) return;
-  // Only in the band does the level set tell where the surface is: a way that is longer is gone in parts.
+  // Only in the band does the level set tell where the surface is: a way that is longer is gone in parts, but not in
+  // more than lead through the whole tank.
   const double cells = maximum_speed * dt / grid_.h;
-  const double parts = std::max(1.0, std::ceil(cells / kLongestWay));
-  for (double part = 0.0; part < parts; part += 1.0) {
+  const auto& n = grid_.lattice.n;
+  const int parts = static_cast<int>(std::ceil(std::clamp<double>(cells, 1.0, n[0] + n[1] + n[2]) / kLongestWay));
+  for (int part = 0; part < parts; ++part) {
     advectCells(grid_, velocity, distance_, dt / parts, kBand, scratch_.field);
     distance_.swap(scratch_.field);
     extendIntoHalo(grid_.lattice, distance_);

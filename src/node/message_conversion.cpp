@@ -1,9 +1,9 @@
 #include "node/message_conversion.h"
 
 #include <cmath>
-#include <sstream>
 
 #include "node/request_error.h"
+#include "scene/shown_vector.h"
 
 namespace monolith {
 namespace {
@@ -12,15 +12,8 @@ using Eigen::Vector3d;
 
 constexpr double kUnitTolerance = 0.01;
 
-std::string shown(const double* values, int count) {
-  std::ostringstream stream;
-  for (int i = 0; i < count; ++i) stream << (i ? ", " : "[") << values[i];
-  stream << "]";
-  return stream.str();
-}
-
 Vector3d checked(const Vector3d& v, const std::string& field) {
-  if (!v.allFinite()) throw RequestError(field + ": value " + shown(v.data(), 3) + ": expected finite numbers");
+  if (!v.allFinite()) throw RequestError(field + ": value " + shownVector(v) + ": expected finite numbers");
   return v;
 }
 
@@ -130,7 +123,7 @@ Eigen::Isometry3d fromMessage(const geometry_msgs::Pose& message, const std::str
   const geometry_msgs::Quaternion& o = message.orientation;
   Eigen::Quaterniond q(o.w, o.x, o.y, o.z);
   if (!(std::abs(q.norm() - 1.0) <= kUnitTolerance)) {
-    throw RequestError(field + ".orientation: value " + shown(q.coeffs().data(), 4) +
+    throw RequestError(field + ".orientation: value " + shownVector(q.coeffs()) +
                        ": expected a quaternion [x, y, z, w] of length 1");
   }
   q.normalize();

@@ -37,12 +37,11 @@ Eigen::Isometry3d TankControl::framePose(const std::string& frame, const std::st
   }
 }
 
-void TankControl::requireFinite(int body, const WrenchCommand& command, const std::string& field) const {
-  const Eigen::Isometry3d X_WF = framePose(command.frame, field);
+void TankControl::requireFinite(int body, const WrenchCommand& command, const Eigen::Isometry3d& X_WF) const {
   try {
     monolith::requireFinite(aboutCentreOfMass(command, X_WF, simulation_.bodies()[body].p_WBcm));
   } catch (const RequestError& error) {
-    throw RequestError(field + ": on \"" + simulation_.bodies()[body].name + "\" " + error.what());
+    throw RequestError("wrench: on \"" + simulation_.bodies()[body].name + "\" " + error.what());
   }
 }
 

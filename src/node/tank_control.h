@@ -29,8 +29,8 @@ class TankControl {
   // X_WF now. The empty frame is the world.
   Eigen::Isometry3d framePose(const std::string& frame, const std::string& field) const;
 
-  // RequestError unless the wrench, as its frame is now, is finite about the body's centre of mass.
-  void requireFinite(int body, const WrenchCommand& command, const std::string& field) const;
+  // RequestError unless the wrench, in its frame as it is now, is finite about the body's centre of mass.
+  void requireFinite(int body, const WrenchCommand& command, const Eigen::Isometry3d& X_WF) const;
 
   // One output step with the wrenches as they are now. Messages of wrenches given up are appended to `lost`. A step
   // that throws is reported as one that was not committed. Wrenches of a step that was not committed are still to act.

@@ -1,8 +1,7 @@
 #include "node/wrench_commands.h"
 
-#include <sstream>
-
 #include "node/request_error.h"
+#include "scene/shown_vector.h"
 
 namespace monolith {
 namespace {
@@ -20,11 +19,8 @@ Wrench aboutCentreOfMass(const WrenchCommand& command, const Eigen::Isometry3d& 
 
 void requireFinite(const Wrench& wrench) {
   if (wrench.force.allFinite() && wrench.torque.allFinite()) return;
-  const Eigen::IOFormat row(6, Eigen::DontAlignCols, ", ", ", ", "", "", "[", "]");
-  std::ostringstream text;
-  text << "about the centre of mass force " << wrench.force.transpose().format(row) << " N and torque "
-       << wrench.torque.transpose().format(row) << " N m: expected finite numbers";
-  throw RequestError(text.str());
+  throw RequestError("about the centre of mass force " + shownVector(wrench.force) + " N and torque " +
+                     shownVector(wrench.torque) + " N m: expected finite numbers");
 }
 
 void WrenchCommands::hold(int body, const WrenchCommand& command) { held_[body].assign(1, Entry{command}); }

@@ -113,15 +113,11 @@ std::string describeOverlaps(const std::vector<RigidBody>& bodies, const TankWal
       solids[i].push_back(std::move(solid));
       box.extend(bounds(shape, bodies[i].pose()));
     }
-    for (int axis = 0; axis < 3; ++axis) {
-      if (walls.periodic[axis] || !counts(i)) continue;
-      const double below = walls.inside.min()[axis] - box.min()[axis];
-      const double above = box.max()[axis] - walls.inside.max()[axis];
-      const std::string name(1, "xyz"[axis]);
-      const std::string start = "body '" + bodies[i].name + "' sticks out of the tank's wall ";
-      if (below > tolerance) lines += start + "-" + name + " by " + metres(below) + "\n";
-      if (above > tolerance) lines += start + "+" + name + " by " + metres(above) + "\n";
-    }
+    if (!counts(i)) continue;
+    forEachWallDepth(walls, box, [&](const std::string& wall, double depth) {
+      if (!(depth > tolerance)) return;
+      lines += "body '" + bodies[i].name + "' sticks out of the tank's wall " + wall + " by " + metres(depth) + "\n";
+    });
   }
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     for (std::size_t j = i + 1; j < bodies.size(); ++j) {

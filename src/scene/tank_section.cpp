@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "scene/scene_sections.h"
+#include "scene/shown_vector.h"
 
 namespace monolith {
 namespace {
@@ -101,9 +102,8 @@ void readLiquid(const YAML::Node& node, const TankDescription& tank, bool tank_u
     if (!(least.array() < most.array()).all()) box.fail("max", "more than min along every axis");
     if (tank_usable && !(inside.contains(least) && inside.contains(most))) {
       std::ostringstream text;
-      const Eigen::IOFormat row(6, Eigen::DontAlignCols, ", ", ", ", "", "", "[", "]");
       text << path << ": value " << shownValue(boxes[i]) << ": expected a box inside the tank, from "
-           << tank.origin.transpose().format(row) << " to " << (tank.origin + tank.size).transpose().format(row);
+           << shownVector(tank.origin) << " to " << shownVector(tank.origin + tank.size);
       violations.add(boxes[i], text.str());
     }
     liquid.boxes.emplace_back(least, most);

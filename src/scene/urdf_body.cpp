@@ -1,5 +1,8 @@
 #include "scene/urdf_body.h"
 
+#include <tinyxml.h>
+
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -8,8 +11,8 @@
 #include "scene/mass_properties.h"
 #include "scene/mesh_file.h"
 #include "scene/resource_path.h"
+#include "scene/shown_vector.h"
 #include "scene/urdf_parser.h"
-#include "scene/xml_text.h"
 
 namespace monolith {
 namespace {
@@ -38,12 +41,6 @@ const char* jointTypeName(int type) {
     case urdf::Joint::FIXED: return "fixed";
     default: return "unknown";
   }
-}
-
-std::string shown(const Vector3d& v) {
-  std::string text;
-  for (int axis = 0; axis < 3; ++axis) text += (axis ? " " : "") + std::to_string(v[axis]);
-  return text;
 }
 
 // Gathers one body from the tree of links.
@@ -111,7 +108,8 @@ class BodyReader {
     if (const auto* box = dynamic_cast<const urdf::Box*>(collision.geometry.get())) {
       shape.kind = Shape::Kind::kBox;
       shape.box_size = toEigen(box->dim);
-      if (!positive(shape.box_size)) fail(name + ": box size " + shown(shape.box_size), "expected three lengths > 0");
+      if (!positive(shape.box_size))
+        fail(name + ": box size " + shownVector(shape.box_size), "expected three lengths > 0");
     } else if (const auto* sphere = dynamic_cast<const urdf::Sphere*>(collision.geometry.get())) {
       shape.kind = Shape::Kind::kSphere;
       shape.radius = requirePositive(name + ": sphere radius", sphere->radius);
@@ -131,7 +129,7 @@ class BodyReader {
   std::shared_ptr<const TriangleMesh> loadMesh(const urdf::Mesh& mesh, const std::string& name) {
     const Vector3d scale = toEigen(mesh.scale);
     if (!scale.allFinite() || (scale.array() == 0.0).any()) {
-      fail(name + ": mesh scale " + shown(scale), "expected three factors other than 0");
+      fail(name + ": mesh scale " + shownVector(scale), "expected three factors other than 0");
       return nullptr;
     }
     try {
@@ -163,28 +161,25 @@ class BodyReader {
     if (const auto* mesh = dynamic_cast<const urdf::Mesh*>(geometry.get())) mesh_files_.insert(mesh->filename);
   }
 
-  // Of each attribute filename="..." that names one of the meshes by a relative path.
   std::string withAbsoluteMeshes() const {
-    const std::string& old = urdf_.xml;
-    if (urdf_.folder.empty()) return old;
-    const std::string attribute = "filename", blanks = " \t\r\n";
-    std::string xml;
-    std::size_t copied = 0;
-    for (std::size_t at = old.find(attribute); at != std::string::npos; at = old.find(attribute, at + 1)) {
-      const std::size_t equals = old.find_first_not_of(blanks, at + attribute.size());
-      if (equals == std::string::npos || old[equals] != '=') continue;
-      const std::size_t quote = old.find_first_not_of(blanks, equals + 1);
-      if (quote == std::string::npos || (old[quote] != '"' && old[quote] != '\'')) continue;
-      const std::size_t end = old.find(old[quote], quote + 1);
-      if (end == std::string::npos) break;
-      const std::string file = unescapedXml(old.substr(quote + 1, end - quote - 1));
-      if (!mesh_files_.count(file) || file.find("://") != std::string::npos) continue;
-      const std::filesystem::path path =
-          std::filesystem::absolute(std::filesystem::path(urdf_.folder) / file).lexically_normal();
-      xml += old.substr(copied, quote + 1 - copied) + escapedXml("file://" + path.string());
-      copied = end;
-    }
-    return xml + old.substr(copied);
+    const auto relative = [](const std::string& file) { return file.find("://") == std::string::npos; };
+    if (urdf_.folder.empty() || std::none_of(mesh_files_.begin(), mesh_files_.end(), relative)) return urdf_.xml;
+    TiXmlDocument document;
+    document.Parse(urdf_.xml.c_str());
+    const auto visit = [&](auto&& self, TiXmlElement& element) -> void {
+      const char* file = element.Attribute("filename");
+      if (file != nullptr && element.ValueStr() == "mesh" && relative(file)) {
+        const auto path = std::filesystem::absolute(std::filesystem::path(urdf_.folder) / file).lexically_normal();
+        element.SetAttribute("filename", "file://" + path.string());
+      }
+      for (auto* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
+        self(self, *child);
+      }
+    };
+    visit(visit, *document.RootElement());
+    TiXmlPrinter printer;
+    document.Accept(&printer);
+    return printer.Str();
   }
 
   static bool positive(const Vector3d& v) { return v.allFinite() && (v.array() > 0.0).all(); }

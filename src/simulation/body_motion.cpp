@@ -4,6 +4,7 @@
 #include <limits>
 #include <sstream>
 
+#include "rigid/overlap.h"
 #include "rigid/rotation.h"
 
 namespace monolith {
@@ -148,31 +149,34 @@ void finishSecondOrder(const BodyPlan& plan, const std::vector<Contact>& contact
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kGivesWay = 2.0;  // what is wedged may move that much faster than what presses it
 
-// How far a body reaches out of a wall, m, and which; negative: it is inside. No more exact than needed to tell
-// whether it is beyond `enough`.
-double reachOut(const RigidBody& body, const TankWalls& walls, double enough, std::string& wall) {
-  const auto deepest = [&](const Eigen::AlignedBox3d& box) {
-    double depth = -kInfinity;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (walls.periodic[axis]) continue;
-      const double below = walls.inside.min()[axis] - box.min()[axis];
-      const double above = box.max()[axis] - walls.inside.max()[axis];
-      if (std::max(below, above) <= depth) continue;
-      depth = std::max(below, above);
-      wall = std::string(below > above ? "-" : "+") + "xyz"[axis];
-    }
-    return depth;
-  };
-  // The box around the body however it is turned nearly always tells.
-  const Eigen::AlignedBox3d own = body.distance->bounds().translated(-body.p_BBcm);
-  const Vector3d reach = Vector3d::Constant(own.min().cwiseAbs().cwiseMax(own.max().cwiseAbs()).norm());
-  const double around = deepest(Eigen::AlignedBox3d(body.p_WBcm - reach, body.p_WBcm + reach));
-  if (around <= enough) return around;
+// How far a body reaches out of a wall at most, m, and of which.
+struct WallIntrusion {
+  double depth = -std::numeric_limits<double>::infinity();
+  std::string wall;
+};
+
+WallIntrusion deepestInWalls(const RigidBody& body, const TankWalls& walls) {
   Eigen::AlignedBox3d box;
   for (const Shape& shape : body.shapes) box.extend(bounds(shape, body.pose()));
-  return deepest(box);
+  WallIntrusion deepest;
+  forEachWallDepth(walls, box, [&](const std::string& wall, double depth) {
+    if (!(depth <= deepest.depth)) deepest = {depth, wall};  // not a number: as deep as can be
+  });
+  return deepest;
+}
+
+// By the sphere around its centre of mass: nearly always enough to tell, and cheap.
+bool mayReachOut(const RigidBody& body, const TankWalls& walls, double allowed) {
+  const Eigen::AlignedBox3d own = body.distance->bounds().translated(-body.p_BBcm);
+  const Vector3d reach = Vector3d::Constant(own.min().cwiseAbs().cwiseMax(own.max().cwiseAbs()).norm() - allowed);
+  const Vector3d least = body.p_WBcm - reach, most = body.p_WBcm + reach;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (walls.periodic[axis]) continue;
+    if (!(least[axis] >= walls.inside.min()[axis] && most[axis] <= walls.inside.max()[axis])) return true;
+  }
+  return false;
 }
 
 std::string intrusion(const std::string& what, double depth, double allowed) {
@@ -190,13 +194,12 @@ std::string describeIntrusion(const BodyPlan& plan, const std::vector<Contact>& 
   double pressed = 0.0;
   for (std::size_t b = 0; b < after.size(); ++b) {
     if (after[b].motion != BodyMotion::kPrescribed) continue;
-    pressed = std::max(pressed, 2.0 * after[b].distanceFrom(before[b].pose()));
+    pressed = std::max(pressed, kGivesWay * after[b].distanceFrom(before[b].pose()));
   }
   for (std::size_t b = 0; b < after.size(); ++b) {
-    if (after[b].motion != BodyMotion::kFree) continue;
-    std::string wall, wall_before;
-    const double depth = reachOut(after[b], walls, allowed, wall);
-    if (depth <= allowed || depth <= pressed + reachOut(before[b], walls, -kInfinity, wall_before)) continue;
+    if (after[b].motion != BodyMotion::kFree || !mayReachOut(after[b], walls, allowed)) continue;
+    const auto [depth, wall] = deepestInWalls(after[b], walls);
+    if (depth <= allowed || depth <= pressed + deepestInWalls(before[b], walls).depth) continue;
     return intrusion("body '" + after[b].name + "' would stick out of the tank's wall " + wall, depth, allowed);
   }
   const auto velocity = [&](int body, const Vector3d& point) -> Vector3d {

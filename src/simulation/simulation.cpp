@@ -10,6 +10,7 @@
 
 #include "fluid/advection.h"
 #include "rigid/overlap.h"
+#include "scene/shown_vector.h"
 #include "simulation/simulation_impl.h"
 
 namespace monolith {
@@ -233,11 +234,9 @@ void Simulation::setBodyState(int body, const Eigen::Isometry3d& X_WB, const Eig
   moved.twist.head<3>() = velocity + angular_velocity.cross(moved.p_WBcm - X_WB.translation());
   moved.twist.tail<3>() = angular_velocity;
   if (!moved.p_WBcm.allFinite() || !moved.twist.allFinite()) {
-    std::ostringstream text;
-    const Eigen::IOFormat row(6, Eigen::DontAlignCols, ", ", ", ", "", "", "[", "]");
-    text << "state of '" << name << "': centre of mass at " << moved.p_WBcm.transpose().format(row)
-         << " m, its velocity " << moved.twist.head<3>().transpose().format(row) << " m/s: expected finite numbers";
-    throw std::invalid_argument(text.str());
+    throw std::invalid_argument("state of '" + name + "': centre of mass at " + shownVector(moved.p_WBcm) +
+                                " m, its velocity " + shownVector(moved.twist.head<3>()) +
+                                " m/s: expected finite numbers");
   }
   const std::string overlaps = describeOverlaps(bodies, m.walls, kOverlapTolerance * m.grid.h, body);
   if (!overlaps.empty()) {

@@ -108,6 +108,7 @@ struct Simulation::Impl {
     // solve and after what was has served.
     CoupledState other;
     std::array<std::vector<std::uint8_t>, 3> known_before, known;
+    double typical_viscosity = 0.0;  // Pa s, of the solve, of a non-Newtonian liquid
   } scratch;
   CoupledSystem system;
   ContactLaws laws;

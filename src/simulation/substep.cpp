@@ -139,7 +139,7 @@ CoupledReport Simulation::Impl::solveWithLiquid(const StepWeights& w, const std:
       solveNonNewtonian(system, viscosity_law, state.typical_viscosity, liquid.rheology.maximum_iterations,
                         scene.solver.tolerance, options, solveAgain, solution, rheology);
   step.rheology_iterations += rheology.iterations;
-  if (solved.status == CoupledReport::Status::kConverged) state.typical_viscosity = rheology.typical_viscosity;
+  scratch.typical_viscosity = rheology.typical_viscosity;
   return solved;
 }
 
@@ -221,7 +221,6 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
     for (const Contact& contact : contacts) step.penetration = std::max(step.penetration, -contact.gap);
     plan = planBodies(w, closing, contacts);
   }
-  const double viscosity_before = state.typical_viscosity;
   const CoupledReport solved = solveWithLiquid(w, contacts, step);
   step.iterations += solved.iterations;
   step.liquid_solves += solved.solves;
@@ -249,10 +248,10 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
                                    state.bodies, moved);
   if (!step.message.empty()) {
     step.status = SolveStatus::kNotConverged;
-    state.typical_viscosity = viscosity_before;
     return false;
   }
   std::swap(state.coupled, scratch.other);
+  if (nonNewtonian()) state.typical_viscosity = scratch.typical_viscosity;
   state.started = true;
   sticking_energy = system.stickingEnergy(state.coupled.twists);
   sticking_momentum = system.stickingMomentum(state.coupled.twists);

@@ -72,6 +72,16 @@ TEST(FreeSurface, LiquidMayCrossManyCellsAtOnce) {
   }
 }
 
+// Nonsense, but it ends.
+TEST(FreeSurface, NoSpeedIsTooLarge) {
+  const MacGrid grid = cube(12, 0.05);
+  FreeSurface surface(grid, 0.31, {});
+  FaceField<double> velocity;
+  for (auto& field : velocity) field.assign(grid.lattice.size, 1e15);
+  surface.advect(velocity, 1.0, 2e15);
+  for (const double d : surface.distance()) ASSERT_TRUE(std::isfinite(d));
+}
+
 TEST(FreeSurface, CorrectionReachesTheTargetAndSaysByHowMuch) {
   const MacGrid grid = cube(12, 0.05);
   const std::vector<double> open(grid.lattice.size, 1.0);
