@@ -30,8 +30,13 @@ class BodyColumns {
     std::int32_t place;
     Real coefficient[6];
   };
-  std::vector<Entry> entries_;  // by bodies
-  std::vector<std::size_t> begin_;
+  // Of the columns: faces of each axis, and cells. Different unknowns, so threads may take one each.
+  static constexpr int kKinds = 4;
+
+  std::size_t bodies() const { return begin_.size() / kKinds; }
+
+  std::vector<Entry> entries_;      // by kinds, within them by bodies
+  std::vector<std::size_t> begin_;  // of each kind and body; one more at the end
   Eigen::MatrixXd A_vv_;
 };
 

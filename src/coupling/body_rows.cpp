@@ -1,5 +1,8 @@
 #include "coupling/body_rows.h"
 
+#include <type_traits>
+#include <utility>
+
 namespace monolith {
 
 Vector6d velocityRow(int axis, const Eigen::Vector3d& x, const Eigen::Vector3d& p_WBcm) {
@@ -9,39 +12,77 @@ Vector6d velocityRow(int axis, const Eigen::Vector3d& x, const Eigen::Vector3d& 
   return row;
 }
 
-void buildDivergenceRows(const MacGrid& grid, const SolidFractions& solids, const std::vector<RigidBody>& bodies,
-                         const StaggeredCoefficients<double>& coefficients, BodyRows& out) {
+void appendRows(const std::vector<BodyRows>& parts, BodyRows& out) {
+  using List = std::vector<BodyRow>;
+  const auto lists = [](auto& rows) {
+    using Rows = std::remove_reference_t<decltype(rows)>;
+    std::vector<std::conditional_t<std::is_const_v<Rows>, const List*, List*>> all{&rows.divergence, &rows.enclosed};
+    for (auto* kind : {&rows.normal, &rows.shear, &rows.drag}) {
+      for (auto& list : *kind) all.push_back(&list);
+    }
+    return all;
+  };
+  std::vector<std::vector<const List*>> from;
+  for (const BodyRows& part : parts) from.push_back(lists(part));
+  const std::vector<List*> to = lists(out);
+#pragma omp parallel for schedule(dynamic)
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    std::size_t size = to[i]->size();
+    for (const auto& part : from) size += part[i]->size();
+    to[i]->reserve(size);
+    for (const auto& part : from) to[i]->insert(to[i]->end(), part[i]->begin(), part[i]->end());
+  }
+}
+
+namespace {
+
+// The rows of a body in one plane of its box.
+void appendPlane(const MacGrid& grid, const BodyFractions& f, int body, int k, const Eigen::Vector3d& p_WBcm,
+                 const StaggeredCoefficients<double>& coefficients, BodyRows& out) {
   const Lattice& l = grid.lattice;
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const BodyFractions& f = solids.bodies[b];
-    for (int k = 0; f.within(2, k + 1) >= 0 && k < f.count[2]; ++k) {
-      for (int j = 0; f.within(1, j + 1) >= 0 && j < f.count[1]; ++j) {
-        for (int i = 0; f.within(0, i + 1) >= 0 && i < f.count[0]; ++i) {
-          int at[3] = {f.low[0] + i, f.low[1] + j, f.low[2] + k};
-          int cell[3];
-          bool outside = false;
-          for (int a = 0; a < 3; ++a) {
-            cell[a] = l.periodic[a] ? ((at[a] % l.n[a]) + l.n[a]) % l.n[a] : at[a];
-            outside = outside || cell[a] < 0 || cell[a] >= l.n[a];
-          }
-          if (outside) continue;
-          const auto c = l.index(cell[0], cell[1], cell[2]);
-          Vector6d row = Vector6d::Zero();
-          for (int a = 0; a < 3; ++a) {
-            int next[3] = {i, j, k};
-            next[a] = f.within(a, next[a] + 1);
-            const double low = f.face[a][f.local(i, j, k)];
-            const double high = f.face[a][f.local(next[0], next[1], next[2])];
-            // The lever arm of both faces is the same about the axis that counts, so equal fractions cancel exactly.
-            if (low == high) continue;
-            row += (high - low) * velocityRow(a, grid.faceCenter(a, at[0], at[1], at[2]), bodies[b].p_WBcm);
-          }
-          if (row.cwiseAbs().maxCoeff() == 0.0) continue;
-          (coefficients.has_pressure[c] ? out.divergence : out.enclosed).push_back({c, static_cast<int>(b), row});
-        }
+  for (int j = 0; f.within(1, j + 1) >= 0 && j < f.count[1]; ++j) {
+    for (int i = 0; f.within(0, i + 1) >= 0 && i < f.count[0]; ++i) {
+      int at[3] = {f.low[0] + i, f.low[1] + j, f.low[2] + k};
+      int cell[3];
+      bool outside = false;
+      for (int a = 0; a < 3; ++a) {
+        cell[a] = l.periodic[a] ? ((at[a] % l.n[a]) + l.n[a]) % l.n[a] : at[a];
+        outside = outside || cell[a] < 0 || cell[a] >= l.n[a];
       }
+      if (outside) continue;
+      const auto c = l.index(cell[0], cell[1], cell[2]);
+      Vector6d row = Vector6d::Zero();
+      for (int a = 0; a < 3; ++a) {
+        int next[3] = {i, j, k};
+        next[a] = f.within(a, next[a] + 1);
+        const double low = f.face[a][f.local(i, j, k)];
+        const double high = f.face[a][f.local(next[0], next[1], next[2])];
+        // The lever arm of both faces is the same about the axis that counts, so equal fractions cancel exactly.
+        if (low == high) continue;
+        row += (high - low) * velocityRow(a, grid.faceCenter(a, at[0], at[1], at[2]), p_WBcm);
+      }
+      if (row.cwiseAbs().maxCoeff() == 0.0) continue;
+      (coefficients.has_pressure[c] ? out.divergence : out.enclosed).push_back({c, body, row});
     }
   }
+}
+
+}  // namespace
+
+void buildDivergenceRows(const MacGrid& grid, const SolidFractions& solids, const std::vector<RigidBody>& bodies,
+                         const StaggeredCoefficients<double>& coefficients, BodyRows& out) {
+  std::vector<std::pair<int, int>> planes;  // body, k
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const BodyFractions& f = solids.bodies[b];
+    for (int k = 0; f.within(2, k + 1) >= 0 && k < f.count[2]; ++k) planes.emplace_back(static_cast<int>(b), k);
+  }
+  std::vector<BodyRows> parts(planes.size());
+#pragma omp parallel for schedule(dynamic)
+  for (std::size_t p = 0; p < planes.size(); ++p) {
+    const auto [b, k] = planes[p];
+    appendPlane(grid, solids.bodies[b], b, k, bodies[b].p_WBcm, coefficients, parts[p]);
+  }
+  appendRows(parts, out);
 }
 
 }  // namespace monolith

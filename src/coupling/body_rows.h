@@ -3,6 +3,7 @@
 // what lies deep inside a body cancels (supplement of the paper that step_problem.h names, section 3), and J_s
 // likewise.
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -30,6 +31,28 @@ struct BodyRows {
   std::array<std::vector<BodyRow>, 3> shear;   // per edge: adds to t
   std::array<std::vector<BodyRow>, 3> drag;    // per sliver face: velocity of the solid there
 };
+
+// Appends rows that were found part by part, in order.
+void appendRows(const std::vector<BodyRows>& parts, BodyRows& out);
+
+// Calls f(first, last) for the rows of each sample, in order of the samples.
+template <class GroupFunction>
+void forEachSample(const std::vector<BodyRow>& rows, GroupFunction&& f) {
+  const auto before = [](const BodyRow& a, const BodyRow& b) { return a.sample < b.sample; };
+  std::vector<BodyRow> sorted;
+  const std::vector<BodyRow>* in_order = &rows;
+  if (!std::is_sorted(rows.begin(), rows.end(), before)) {
+    sorted = rows;
+    std::stable_sort(sorted.begin(), sorted.end(), before);
+    in_order = &sorted;
+  }
+  for (std::size_t first = 0; first < in_order->size();) {
+    std::size_t last = first;
+    while (last < in_order->size() && (*in_order)[last].sample == (*in_order)[first].sample) ++last;
+    f(in_order->data() + first, in_order->data() + last);
+    first = last;
+  }
+}
 
 // J_p: the flux that a body's part of the faces carries out of each cell, from differences of neighbouring W_Si.
 // Appends to divergence and enclosed.

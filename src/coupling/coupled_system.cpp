@@ -100,19 +100,14 @@ const StepProblem& CoupledSystem::problem() const { return impl_->problem; }
 double CoupledSystem::stickingEnergy(const std::vector<Vector6d>& twists) const {
   const StepProblem& p = impl_->problem;
   double sum = 0.0;
-  for (const StickingLiquid& s : p.sticking) {
-    const double u = velocityRow(s.axis, s.position, (*p.bodies)[s.body].p_WBcm).dot(twists[s.body]);
-    sum += 0.5 * s.fraction * u * u;
-  }
+  for (std::size_t b = 0; b < twists.size(); ++b) sum += 0.5 * twists[b].dot(p.stuck_inertia[b] * twists[b]);
   return p.impulse_scale * sum;
 }
 
 Eigen::Vector3d CoupledSystem::stickingMomentum(const std::vector<Vector6d>& twists) const {
   const StepProblem& p = impl_->problem;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const StickingLiquid& s : p.sticking) {
-    sum[s.axis] += s.fraction * velocityRow(s.axis, s.position, (*p.bodies)[s.body].p_WBcm).dot(twists[s.body]);
-  }
+  for (std::size_t b = 0; b < twists.size(); ++b) sum += (p.stuck_inertia[b] * twists[b]).head<3>();
   return p.impulse_scale * sum;
 }
 

@@ -1,5 +1,6 @@
 #include "coupling/pressure_regions.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <map>
@@ -9,13 +10,16 @@ namespace monolith {
 
 namespace {
 
-// Runs of connected cells along x, joined across the faces between rows (union-find).
+// Runs of connected cells along x, joined across the faces between rows (union-find). What every row needs is found by
+// all threads; numbers and joints are in the order of the rows.
 class Runs {
  public:
-  explicit Runs(const StaggeredCoefficients<double>& c) : c_(c), l_(c.lattice), of_(l_.size, -1) {
-    number();
+  explicit Runs(const StaggeredCoefficients<double>& c) : c_(c), l_(c.lattice) {
+    const std::vector<int> first = number();
+    parent_.resize(first.back());
+    std::iota(parent_.begin(), parent_.end(), 0);
     open_to_air_.assign(parent_.size(), 0);
-    forEachRowOfCells([&](std::ptrdiff_t row, int j, int k) { join(row, {0, j, k}); });
+    join();
   }
 
   int count() const { return static_cast<int>(parent_.size()); }
@@ -27,21 +31,43 @@ class Runs {
     while (parent_[run] != run) run = parent_[run] = parent_[parent_[run]];
     return run;
   }
+  // f(run, begin, end), in the order of the cells.
   template <class Function>
-  void forEachRowOfCells(Function&& f) const {
+  void forEachRun(Function&& f) const {
     for (int k = 0; k < l_.n[2]; ++k) {
-      for (int j = 0; j < l_.n[1]; ++j) f(l_.index(0, j, k), j, k);
+      for (int j = 0; j < l_.n[1]; ++j) {
+        const auto row = l_.index(0, j, k), row_end = row + l_.n[0];
+        if (kind_[row / l_.stride[1]] == kAir) continue;
+        if (kind_[row / l_.stride[1]] == kLiquid) {
+          f(of_[row], row, row_end);
+          continue;
+        }
+        for (auto cell = row; cell < row_end;) {
+          auto end = cell + 1;
+          while (end < row_end && of_[end] == of_[cell]) ++end;
+          if (of_[cell] >= 0) f(of_[cell], cell, end);
+          cell = end;
+        }
+      }
     }
   }
 
  private:
   // Most rows are liquid from wall to wall, one run, or air, none.
   enum RowKind : std::uint8_t { kMixed, kLiquid, kAir };
+  static constexpr int kToAir = -1;
+  using Joint = std::pair<int, int>;  // two runs; or one and kToAir
 
-  std::uint8_t& kindOf(std::ptrdiff_t row) { return kind_[row / l_.stride[1]]; }
+  RowKind kindOf(std::ptrdiff_t row) const { return kind_[row / l_.stride[1]]; }
 
-  void number() {
-    kind_.assign(l_.size / l_.stride[1] + 1, kAir);
+  // Numbers the runs; returns the first of each row, and how many there are.
+  std::vector<int> number() {
+    const auto rows = static_cast<std::ptrdiff_t>(l_.size) / l_.stride[1];
+    kind_.assign(rows, kAir);
+    std::vector<int> first(rows + 1, 0);
+    const auto goesOn = [&](std::ptrdiff_t cell) {
+      return c_.has_pressure[cell - 1] && c_.has_pressure[cell] && c_.open[0][cell] > 0.0;
+    };
     forEachRow(l_, [&](std::ptrdiff_t row, int j, int k) {
       if (j >= l_.n[1] || k >= l_.n[2]) return;
       const std::uint8_t* has = c_.has_pressure.data() + row;
@@ -52,29 +78,51 @@ class Runs {
         some += has[i] != 0;
         closed += !(has[i] != 0 && open[i] > 0.0);
       }
-      kindOf(row) = some == 0 ? kAir : closed == 0 ? kLiquid : kMixed;
-    });
-    forEachRowOfCells([&](std::ptrdiff_t row, int, int) {
-      if (kindOf(row) == kAir) return;
-      if (kindOf(row) == kLiquid) {
-        std::fill_n(of_.begin() + row, l_.n[0], count());
-        parent_.push_back(count());
-        return;
+      const auto at = row / l_.stride[1];
+      kind_[at] = some == 0 ? kAir : closed == 0 ? kLiquid : kMixed;
+      int runs = has[0] != 0;
+      if (kind_[at] == kMixed) {
+        for (auto cell = row + 1; cell < row + l_.n[0]; ++cell) runs += has[cell - row] && !goesOn(cell);
       }
+      first[at + 1] = runs;
+    });
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    of_.resize(l_.size);
+#pragma omp parallel for schedule(static, kPlanesInTurn)
+    for (std::ptrdiff_t at = 0; at < rows; ++at) {
+      int* of = of_.data() + at * l_.stride[1];
+      std::fill_n(of, l_.stride[1], -1);
+      if (kind_[at] == kAir) continue;
+      const auto row = at * l_.stride[1] + Lattice::kLowHalo;
+      int run = first[at] - 1;
       for (auto cell = row; cell < row + l_.n[0]; ++cell) {
         if (!c_.has_pressure[cell]) continue;
-        if (cell > row && of_[cell - 1] >= 0 && c_.open[0][cell] > 0.0) {
-          of_[cell] = of_[cell - 1];
-        } else {
-          of_[cell] = count();
-          parent_.push_back(of_[cell]);
-        }
+        if (cell == row || !goesOn(cell)) ++run;
+        of_[cell] = run;
       }
-    });
+    }
+    return first;
   }
 
-  // A row with what is across its low faces, and the high ones where the grid ends.
-  void join(std::ptrdiff_t row, const std::array<int, 3>& at) {
+  void join() {
+    std::vector<std::vector<Joint>> planes(l_.n[2]);
+#pragma omp parallel for schedule(static, kPlanesInTurn)
+    for (int k = 0; k < l_.n[2]; ++k) {
+      for (int j = 0; j < l_.n[1]; ++j) findJoints(l_.index(0, j, k), {0, j, k}, planes[k]);
+    }
+    for (const auto& plane : planes) {
+      for (const auto& [here, there] : plane) {
+        if (there == kToAir) {
+          open_to_air_[here] = 1;
+        } else {
+          unite(here, there);
+        }
+      }
+    }
+  }
+
+  // Of a row with what is across its low faces, and the high ones where the grid ends.
+  void findJoints(std::ptrdiff_t row, const std::array<int, 3>& at, std::vector<Joint>& out) const {
     for (int a = 0; a < 3; ++a) {
       const auto s = l_.stride[a];
       for (const int side : {0, 1}) {
@@ -84,13 +132,12 @@ class Runs {
         if (a > 0 && at[a] == 0 && side == 0 && l_.periodic[a]) to_other += s * l_.n[a];
         const auto to_face = side == 0 ? 0 : s;
         if (a == 0) {
-          joinAlong(row, side, to_face);
+          findJointsAlong(row, side, to_face, out);
         } else if (kindOf(row) == kLiquid && kindOf(row + to_other) == kLiquid && c_.open[a][row + to_face] > 0.0) {
-          unite(of_[row], of_[row + to_other]);
+          out.emplace_back(of_[row], of_[row + to_other]);
         } else if (kindOf(row) != kAir || kindOf(row + to_other) != kAir) {
-          int before = -1, beside = -1;
           for (auto cell = row; cell < row + l_.n[0]; ++cell) {
-            joinAcross(of_[cell], of_[cell + to_other], c_.open[a][cell + to_face], before, beside);
+            addJoint(of_[cell], of_[cell + to_other], c_.open[a][cell + to_face], out);
           }
         }
       }
@@ -98,28 +145,22 @@ class Runs {
   }
 
   // Within a row; its ends are next to each other where the axis is periodic.
-  void joinAlong(std::ptrdiff_t row, int side, std::ptrdiff_t to_face) {
+  void findJointsAlong(std::ptrdiff_t row, int side, std::ptrdiff_t to_face, std::vector<Joint>& out) const {
     if (kindOf(row) == kAir) return;
-    int before = -1, beside = -1;
     const int first = side == 0 ? 0 : l_.n[0] - 1;
     const int last = side == 0 && kindOf(row) == kLiquid ? 0 : l_.n[0] - 1;
     for (int i = first; i <= last; ++i) {
       auto other = row + i + (side == 0 ? -1 : 1);
       if (i == 0 && side == 0 && l_.periodic[0]) other += l_.n[0];
-      joinAcross(of_[row + i], of_[other], c_.open[0][row + i + to_face], before, beside);
+      addJoint(of_[row + i], of_[other], c_.open[0][row + i + to_face], out);
     }
   }
 
-  // before, beside: the pair that was joined last.
-  void joinAcross(int here, int there, double open, int& before, int& beside) {
+  // Of neighbouring cells in turn: most joints are the last one again.
+  static void addJoint(int here, int there, double open, std::vector<Joint>& out) {
     if (here == there || !(open > 0.0)) return;
-    if (here < 0 || there < 0) {
-      open_to_air_[std::max(here, there)] = 1;
-    } else if (here != before || there != beside) {
-      unite(here, there);
-      before = here;
-      beside = there;
-    }
+    const Joint joint(std::max(here, there), std::min(here, there));
+    if (out.empty() || out.back() != joint) out.push_back(joint);
   }
   void unite(int a, int b) {
     a = root(a);
@@ -129,16 +170,16 @@ class Runs {
 
   const StaggeredCoefficients<double>& c_;
   const Lattice& l_;
-  std::vector<int> of_, parent_;
+  Eigen::ArrayXi of_;  // resized, it is not written by one thread first
+  std::vector<int> parent_;
   std::vector<char> open_to_air_;
-  std::vector<std::uint8_t> kind_;
+  std::vector<RowKind> kind_;  // of every row of the lattice
 };
 
 }  // namespace
 
 std::vector<PressureRegion> findPressureRegions(const StaggeredCoefficients<double>& c, const BodyRows& rows,
                                                 const std::vector<char>& moves) {
-  const Lattice& l = c.lattice;
   Runs runs(c);
   std::vector<int> id_of(runs.count(), -1);
   std::vector<PressureRegion> regions;
@@ -153,18 +194,11 @@ std::vector<PressureRegion> findPressureRegions(const StaggeredCoefficients<doub
     if (runs.openToAir(run)) regions[id_of[run]].sealed = false;
   }
   if (std::any_of(regions.begin(), regions.end(), [](const PressureRegion& region) { return region.sealed; })) {
-    runs.forEachRowOfCells([&](std::ptrdiff_t row, int, int) {
-      for (auto cell = row; cell < row + l.n[0];) {
-        const int run = runs.of(cell);
-        auto end = cell + 1;
-        while (end < row + l.n[0] && runs.of(end) == run) ++end;
-        if (run >= 0 && regions[id_of[run]].sealed) {
-          PressureRegion& region = regions[id_of[run]];
-          region.runs.push_back({static_cast<std::int32_t>(cell), static_cast<std::int32_t>(end)});
-          region.cells += static_cast<std::size_t>(end - cell);
-        }
-        cell = end;
-      }
+    runs.forEachRun([&](int run, std::ptrdiff_t begin, std::ptrdiff_t end) {
+      PressureRegion& region = regions[id_of[run]];
+      if (!region.sealed) return;
+      region.runs.push_back({static_cast<std::int32_t>(begin), static_cast<std::int32_t>(end)});
+      region.cells += static_cast<std::size_t>(end - begin);
     });
   }
   // The constant of a sealed region pushes a body by the sum of its rows there.

@@ -69,45 +69,57 @@ void StepOperator::apply(StepVector& x, StepVector& y) {
   }
 }
 
-void StepOperator::bodyForces(StepVector& x, std::vector<Vector6d>& forces) {
+void StepOperator::bodyForces(StepVector& x, std::vector<Vector6d>& forces) const {
   const StaggeredCoefficients<double>& c = *coefficients_;
   const Lattice& l = c.lattice;
-  for (auto& force : forces) force.setZero();
-  for (const BodyRow& row : rows_->divergence) forces[row.body] -= row.coefficient * x.pressure[row.sample];
-  if (!c.viscous) return;
-  for (auto& field : x.velocity) fillHalo(l, field);
-  // Cleared before for what largestDivergence() left, and after, so that it finds nothing beyond the cells.
-  samples_.resize(l.size, 0.0);
-  std::vector<double>& solid = samples_;
-  // Bodies that share a sample feel each other's motion: a stress is liquid(sample) + weight(sample) * solid[sample].
-  const auto add = [&](const std::vector<BodyRow>& rows, auto&& liquid, auto&& weight) {
-    for (const BodyRow& row : rows) solid[row.sample] = 0.0;
-    for (const BodyRow& row : rows) solid[row.sample] += row.coefficient.dot(x.bodies[row.body]);
-    for (const BodyRow& row : rows) {
-      forces[row.body] += row.coefficient * (liquid(row.sample) + weight(row.sample) * solid[row.sample]);
-    }
-    for (const BodyRow& row : rows) solid[row.sample] = 0.0;
+  if (c.viscous) {
+    for (auto& field : x.velocity) fillHalo(l, field);
+  }
+  // Bodies that share a sample feel each other's motion: a stress is liquid(sample) + weight(sample) * solid(sample).
+  const auto add = [&](const std::vector<BodyRow>& rows, std::vector<Vector6d>& out, auto&& liquid, auto&& weight) {
+    forEachSample(rows, [&](const BodyRow* first, const BodyRow* last) {
+      double solid = 0.0;
+      for (const BodyRow* row = first; row != last; ++row) solid += row->coefficient.dot(x.bodies[row->body]);
+      const double stress = liquid(first->sample) + weight(first->sample) * solid;
+      for (const BodyRow* row = first; row != last; ++row) out[row->body] += stress * row->coefficient;
+    });
   };
-  for (int a = 0; a < 3; ++a) {
-    const auto& u = x.velocity[a];
-    const auto& normal = c.normal[a];
+  const auto addNormal = [&](int a, std::vector<Vector6d>& out) {
+    const auto &u = x.velocity[a], &normal = c.normal[a];
     add(
-        rows_->normal[a], [&](std::ptrdiff_t s) { return normal[s] * (u[s + l.stride[a]] - u[s]); },
+        rows_->normal[a], out, [&](std::ptrdiff_t s) { return normal[s] * (u[s + l.stride[a]] - u[s]); },
         [&](std::ptrdiff_t s) { return normal[s]; });
-    const auto [first, second] = kShearPairs[a];
-    const auto& v = x.velocity[first];
-    const auto& w = x.velocity[second];
-    const auto& shear = c.shear[a];
-    add(
-        rows_->shear[a],
-        [&, sv = l.stride[second], sw = l.stride[first]](std::ptrdiff_t s) {
-          return shear[0][s] * (v[s] - v[s - sv]) + shear[1][s] * (w[s] - w[s - sw]);
-        },
-        [](std::ptrdiff_t) { return 1.0; });
     for (const BodyRow& row : rows_->drag[a]) {
       const double slip = row.coefficient.dot(x.bodies[row.body]) - u[row.sample];
-      forces[row.body] += row.coefficient * (c.drag[a][row.sample] * slip);
+      out[row.body] += row.coefficient * (c.drag[a][row.sample] * slip);
     }
+  };
+  const auto addShear = [&](int pair, std::vector<Vector6d>& out) {
+    const auto [first, second] = kShearPairs[pair];
+    const auto &v = x.velocity[first], &w = x.velocity[second];
+    const auto& shear = c.shear[pair];
+    const auto sv = l.stride[second], sw = l.stride[first];
+    add(
+        rows_->shear[pair], out,
+        [&](std::ptrdiff_t s) { return shear[0][s] * (v[s] - v[s - sv]) + shear[1][s] * (w[s] - w[s - sw]); },
+        [](std::ptrdiff_t) { return 1.0; });
+  };
+  // Kinds of rows apart from each other, their sums in order.
+  const int kinds = c.viscous ? 7 : 1;
+  std::vector<std::vector<Vector6d>> parts(kinds, std::vector<Vector6d>(forces.size(), Vector6d::Zero()));
+#pragma omp parallel for schedule(dynamic)
+  for (int kind = 0; kind < kinds; ++kind) {
+    if (kind == 0) {
+      for (const BodyRow& row : rows_->divergence) parts[0][row.body] -= row.coefficient * x.pressure[row.sample];
+    } else if (kind <= 3) {
+      addShear(kind - 1, parts[kind]);
+    } else {
+      addNormal(kind - 4, parts[kind]);
+    }
+  }
+  for (std::size_t b = 0; b < forces.size(); ++b) {
+    forces[b].setZero();
+    for (const auto& part : parts) forces[b] += part[b];
   }
 }
 

@@ -36,7 +36,7 @@ class StepOperator {
   void apply(StepVector& x, StepVector& y);
 
   // The bodies' part of apply(), at the cost of the bodies' rows alone; and the largest entry of its divergence.
-  void bodyForces(StepVector& x, std::vector<Vector6d>& forces);
+  void bodyForces(StepVector& x, std::vector<Vector6d>& forces) const;
   double largestDivergence(StepVector& x);
 
  private:

@@ -35,7 +35,7 @@ void StepProblem::assemble(SolidFractions& solids, const std::vector<RigidBody>&
   impulse_scale = density * grid.cellVolume();
   pressure_scale = density * grid.h / dt;
 
-  sticking.clear();
+  stuck_inertia.assign(all_bodies.size(), Matrix6d::Zero());
   cell_viscosity.clear();
   if (discretisation == Discretisation::kFitted) {
     assembleFitted(solids, liquid_distance, rates);
@@ -61,7 +61,7 @@ void StepProblem::assemble(SolidFractions& solids, const std::vector<RigidBody>&
     M.topLeftCorner<3, 3>() = all_bodies[b].mass * Eigen::Matrix3d::Identity();
     M.bottomRightCorner<3, 3>() = all_bodies[b].worldInertia();
     M /= impulse_scale;
-    inertia.push_back(M);
+    inertia.push_back(M + stuck_inertia[b]);
     solid_inertia.push_back(M);
     // A light body moves with the liquid that it displaces: that is its scale then.
     double displaced = 0.0;
@@ -71,11 +71,6 @@ void StepProblem::assemble(SolidFractions& solids, const std::vector<RigidBody>&
     Vector6d scale;
     for (int d = 0; d < 6; ++d) scale[d] = std::sqrt(M(d, d) + displaced * (d < 3 ? 1.0 : 0.4 * radius2));
     twist_scale.push_back(scale);
-  }
-  for (const StickingLiquid& s : sticking) {
-    if (free_index[s.body] < 0) continue;
-    const Vector6d row = velocityRow(s.axis, s.position, all_bodies[s.body].p_WBcm);
-    inertia[free_index[s.body]] += s.fraction * row * row.transpose();
   }
   regions = findPressureRegions(coefficients, rows, moves);
 }
@@ -87,12 +82,7 @@ void StepProblem::forget() {
 
 void StepProblem::assembleFitted(SolidFractions& solids, const std::vector<double>& liquid_distance, bool rates) {
   const bool sticks = viscous_number > 0.0 && viscous_number * impulse_scale >= sticking_viscosity * dt * grid.h;
-  if (sticks) {
-    attachStickingLiquid(grid, solids, sticking);
-    for (StickingLiquid& s : sticking) {
-      s.fraction *= liquidPart(liquid_distance[s.face - grid.lattice.stride[s.axis]], liquid_distance[s.face]);
-    }
-  }
+  if (sticks) stuck_inertia = attachStickingLiquid(grid, *bodies, liquid_distance, solids);
   const StokesGeometry geometry{&solids.fluid, &solids.distance, &liquid_distance, &solids.cell_distance};
   const RowKinds found = findRowKinds(grid.lattice, solids.bodies, liquid_distance);
   if (rates) {
@@ -161,10 +151,10 @@ void StepProblem::toVelocities(FaceField<double>& unknowns) const {
   }
 }
 
-// It has moved with its body: its momentum is not that of the face, which is slower.
-double StepProblem::stickingVelocity(const StickingLiquid& s, const Vector6d& row,
-                                     const Eigen::Vector3d& gravity) const {
-  return row.dot((*bodies)[s.body].twist) + dt * gravity[s.axis];
+Vector6d StepProblem::stickingTwist(std::size_t body, const Eigen::Vector3d& gravity) const {
+  Vector6d twist = (*bodies)[body].twist;
+  twist.head<3>() += dt * gravity;
+  return twist;
 }
 
 Vector6d StepProblem::enclosedImpulse(const EnclosedWeight& weight, const Eigen::Vector3d& gravity) const {
@@ -203,10 +193,9 @@ std::string StepProblem::rightSide(FaceField<double> free_velocity, const std::v
   }
   for (auto& field : rhs.velocity) clearHalo(l, field);
   clearHalo(l, rhs.pressure);
-  for (std::size_t i = 0; i < free.size(); ++i) rhs.bodies[free[i]] += solid_inertia[i] * free_twists[free[i]];
-  for (const StickingLiquid& s : sticking) {
-    const Vector6d row = velocityRow(s.axis, s.position, (*bodies)[s.body].p_WBcm);
-    rhs.bodies[s.body] += s.fraction * stickingVelocity(s, row, gravity) * row;
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    const std::size_t b = free[i];
+    rhs.bodies[b] += solid_inertia[i] * free_twists[b] + stuck_inertia[b] * stickingTwist(b, gravity);
   }
   for (const EnclosedWeight& weight : enclosed) rhs.bodies[weight.body] += enclosedImpulse(weight, gravity);
   for (std::size_t b = 0; b < bodies->size(); ++b) {
@@ -268,9 +257,8 @@ void StepProblem::results(StepVector& x, const Eigen::Vector3d& gravity, std::ve
   std::vector<Vector6d> forces(bodies->size());
   op_.bodyForces(x, forces);
   divergence = op_.largestDivergence(x) / grid.h;
-  for (const StickingLiquid& s : sticking) {
-    const Vector6d row = velocityRow(s.axis, s.position, (*bodies)[s.body].p_WBcm);
-    forces[s.body] += s.fraction * (row.dot(x.bodies[s.body]) - stickingVelocity(s, row, gravity)) * row;
+  for (std::size_t b = 0; b < bodies->size(); ++b) {
+    forces[b] += stuck_inertia[b] * (x.bodies[b] - stickingTwist(b, gravity));
   }
   for (const EnclosedWeight& weight : enclosed) forces[weight.body] -= enclosedImpulse(weight, gravity);
   const double force_scale = impulse_scale / dt;

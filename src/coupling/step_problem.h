@@ -98,13 +98,15 @@ class StepProblem {
   std::vector<double> radius;            // of free bodies, cells: of a sphere that displaces as much
   std::vector<Matrix6d> inertia;         // M^ of free bodies with the liquid that sticks to them
   std::vector<Matrix6d> solid_inertia;   // M^ of free bodies by themselves
-  std::vector<StickingLiquid> sticking;  // fraction is that of liquid: times W_L
+  std::vector<Matrix6d> stuck_inertia;   // M^ of the liquid that sticks to each body, free or not
   std::vector<EnclosedWeight> enclosed;  // in contacts, which liquid reaches from their rim
 
  private:
   void assembleFitted(SolidFractions& solids, const std::vector<double>& liquid_distance, bool rates);
   void assembleFractions(const SolidFractions& solids, const std::vector<double>& liquid_distance, bool rates);
-  double stickingVelocity(const StickingLiquid& s, const Vector6d& row, const Eigen::Vector3d& gravity) const;
+  // What the liquid that sticks to a body would move at by itself: it has moved with the body, so its momentum is not
+  // that of the face, which is slower.
+  Vector6d stickingTwist(std::size_t body, const Eigen::Vector3d& gravity) const;
   // Dimensionless impulse on a body by the weight of the liquid between a contact and its rim.
   Vector6d enclosedImpulse(const EnclosedWeight& weight, const Eigen::Vector3d& gravity) const;
   std::string balanceSealedRegions(std::vector<double>& flux) const;

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "coupling/body_rows.h"
+#include "coupling/stokes_coefficients.h"
+
 namespace monolith {
 namespace {
 
@@ -37,6 +40,18 @@ bool isClear(const Lattice& l, int axis, int at) {
   return l.periodic[axis] || (at >= kBesideWall && at < l.n[axis] - kBesideWall);
 }
 
+struct BodyInertia {
+  int body;
+  Matrix6d sum;
+};
+
+Matrix6d& inertiaOf(int body, std::vector<BodyInertia>& parts) {
+  const auto same = [&](const BodyInertia& part) { return part.body == body; };
+  auto found = std::find_if(parts.begin(), parts.end(), same);
+  if (found == parts.end()) found = parts.insert(found, {body, Matrix6d::Zero()});
+  return found->sum;
+}
+
 }  // namespace
 
 double stickingViscosity(double density, const Eigen::Vector3d& gravity, double cell_width) {
@@ -44,68 +59,77 @@ double stickingViscosity(double density, const Eigen::Vector3d& gravity, double 
   return kLeastLayer * density * std::sqrt(gravity.norm() * cell_width * cell_width * cell_width);
 }
 
-void attachStickingLiquid(const MacGrid& grid, SolidFractions& solids, std::vector<StickingLiquid>& out) {
+std::vector<Matrix6d> attachStickingLiquid(const MacGrid& grid, const std::vector<RigidBody>& bodies,
+                                           const std::vector<double>& liquid_distance, SolidFractions& solids) {
   const Lattice& l = grid.lattice;
-  out.clear();
   const std::vector<std::uint8_t> near_body = rowsOfBodies(l, solids.bodies);
-  for (int a = 0; a < 3; ++a) {
+  // Of every plane of faces of every axis; their sums in order.
+  const int planes = l.faceEnd(2);
+  std::vector<std::vector<BodyInertia>> found(3 * planes);
+#pragma omp parallel for schedule(dynamic)
+  for (int at = 0; at < 3 * planes; ++at) {
+    const int a = at / planes, k = at % planes;
     const auto& distance = solids.distance[a];
     const auto& owner = solids.owner[a];
     auto& fluid = solids.fluid[a];
-    std::vector<std::vector<StickingLiquid>> planes(l.faceEnd(2));
-#pragma omp parallel for schedule(dynamic)
-    for (int k = 0; k < l.faceEnd(2); ++k) {
-      for (int j = 0; j < l.faceEnd(1); ++j) {
-        // Far from all of them and from the walls beside it only a row's ends are next to a solid.
-        const bool between =
-            !near_body[j + static_cast<std::size_t>(l.faceEnd(1)) * k] && isClear(l, 1, j) && isClear(l, 2, k);
-        for (int i = 0; i < l.faceEnd(0); ++i) {
-          if (between && i == kBesideWall) i = std::max(i, l.faceEnd(0) - kBesideWall);
-          const auto f = l.index(i, j, k);
-          if (!(fluid[f] > 0.0) || distance[f] >= 1.0) continue;
-          double kept = 0.0;
-          int body = owner[f];
-          if (distance[f] > 0.0) {
-            kept = 1.0;
-            double nearest = 1.0;
-            for (int b = 0; b < 3; ++b) {
-              double share = 0.0;
-              for (const auto step : {-l.stride[b], l.stride[b]}) {
-                const double beyond = distance[f + step];
-                double theta = 1.0;
-                if (beyond <= 0.0) {
-                  // The distance here may be that of a body: walls lie on faces, whatever else is near.
-                  const bool wall = owner[f + step] < 0;
-                  theta = !wall ? distance[f] / (distance[f] - beyond) : a == b ? 1.0 : 0.5;
-                  share += wall ? kExtraAtWall : kExtraAtBody;
-                  if (theta < nearest) {
-                    nearest = theta;
-                    body = owner[f + step];
-                  }
+    for (int j = 0; j < l.faceEnd(1); ++j) {
+      // Far from all of them and from the walls beside it only a row's ends are next to a solid.
+      const bool between =
+          !near_body[j + static_cast<std::size_t>(l.faceEnd(1)) * k] && isClear(l, 1, j) && isClear(l, 2, k);
+      for (int i = 0; i < l.faceEnd(0); ++i) {
+        if (between && i == kBesideWall) i = std::max(i, l.faceEnd(0) - kBesideWall);
+        const auto f = l.index(i, j, k);
+        if (!(fluid[f] > 0.0) || distance[f] >= 1.0) continue;
+        double kept = 0.0;
+        int body = owner[f];
+        if (distance[f] > 0.0) {
+          kept = 1.0;
+          double nearest = 1.0;
+          for (int b = 0; b < 3; ++b) {
+            double share = 0.0;
+            for (const auto step : {-l.stride[b], l.stride[b]}) {
+              const double beyond = distance[f + step];
+              double theta = 1.0;
+              if (beyond <= 0.0) {
+                // The distance here may be that of a body: walls lie on faces, whatever else is near.
+                const bool wall = owner[f + step] < 0;
+                theta = !wall ? distance[f] / (distance[f] - beyond) : a == b ? 1.0 : 0.5;
+                share += wall ? kExtraAtWall : kExtraAtBody;
+                if (theta < nearest) {
+                  nearest = theta;
+                  body = owner[f + step];
                 }
-                share += 0.5 * theta;
               }
-              kept = std::min(kept, share);
+              share += 0.5 * theta;
             }
+            kept = std::min(kept, share);
           }
-          if (kept >= fluid[f]) continue;
-          const double stuck = fluid[f] - kept;
-          fluid[f] = kept;
-          if (body < 0) continue;
-          BodyFractions& fractions = solids.bodies[body];
-          const int cell[3] = {i, j, k};
-          int local[3];
-          if (!localCell(l, fractions, cell, local)) continue;
-          fractions.face[a][fractions.local(local[0], local[1], local[2])] += stuck;
-          planes[k].push_back({a, f, body, stuck,
-                               grid.faceCenter(a, fractions.low[0] + local[0], fractions.low[1] + local[1],
-                                               fractions.low[2] + local[2])});
         }
+        if (kept >= fluid[f]) continue;
+        const double stuck = fluid[f] - kept;
+        fluid[f] = kept;
+        if (body < 0) continue;
+        BodyFractions& fractions = solids.bodies[body];
+        const int cell[3] = {i, j, k};
+        int local[3];
+        if (!localCell(l, fractions, cell, local)) continue;
+        fractions.face[a][fractions.local(local[0], local[1], local[2])] += stuck;
+        const double mass = stuck * liquidPart(liquid_distance[f - l.stride[a]], liquid_distance[f]);
+        if (mass == 0.0) continue;
+        // In the image next to the body.
+        const Eigen::Vector3d x =
+            grid.faceCenter(a, fractions.low[0] + local[0], fractions.low[1] + local[1], fractions.low[2] + local[2]);
+        const Vector6d row = velocityRow(a, x, bodies[body].p_WBcm);
+        inertiaOf(body, found[at]) += mass * row * row.transpose();
       }
     }
-    for (const auto& plane : planes) out.insert(out.end(), plane.begin(), plane.end());
-    fillHalo(l, fluid);
   }
+  std::vector<Matrix6d> inertia(bodies.size(), Matrix6d::Zero());
+  for (const auto& plane : found) {
+    for (const BodyInertia& part : plane) inertia[part.body] += part.sum;
+  }
+  for (auto& field : solids.fluid) fillHalo(l, field);
+  return inertia;
 }
 
 }  // namespace monolith

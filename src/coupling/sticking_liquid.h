@@ -21,15 +21,9 @@ namespace monolith {
 // mu >= 0.1 rho sqrt(g h^3). No time step is in it, or results would jump where the step is refined.
 double stickingViscosity(double density, const Eigen::Vector3d& gravity, double cell_width);
 
-struct StickingLiquid {
-  int axis = 0;
-  std::ptrdiff_t face = 0;
-  int body = 0;
-  double fraction = 0.0;  // of the control volume, liquid or air
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // of the face, in the image next to the body
-};
-
-// Moves the sticking part of `fluid` to the bodies' fractions (to nothing at walls) and lists it.
-void attachStickingLiquid(const MacGrid& grid, SolidFractions& solids, std::vector<StickingLiquid>& out);
+// Moves the sticking part of `fluid` to the bodies' fractions (to nothing at walls). Returns the inertia M^ of the
+// liquid that each body has got, which moves as its points do; liquid_distance in cell widths with its halo filled.
+std::vector<Matrix6d> attachStickingLiquid(const MacGrid& grid, const std::vector<RigidBody>& bodies,
+                                           const std::vector<double>& liquid_distance, SolidFractions& solids);
 
 }  // namespace monolith

@@ -54,17 +54,19 @@ class RowBuilder {
 // Cells, and those beyond the last ones, from which the samples reach into the box of a body.
 std::vector<char> nearBodies(const Lattice& l, const SolidFractions& solids) {
   std::vector<char> near(l.size, 0);
+  const auto inside = [&](int at, int axis) {
+    if (l.periodic[axis]) return (at % l.n[axis] + l.n[axis]) % l.n[axis];
+    return at < l.faceEnd(axis) ? at : -1;
+  };
   for (const BodyFractions& f : solids.bodies) {
-    for (int k = -1; k <= f.count[2]; ++k) {
-      for (int j = -1; j <= f.count[1]; ++j) {
-        for (int i = -1; i <= f.count[0]; ++i) {
-          int at[3] = {f.low[0] + i, f.low[1] + j, f.low[2] + k};
-          bool inside = true;
-          for (int a = 0; a < 3; ++a) {
-            if (l.periodic[a]) at[a] = (at[a] % l.n[a] + l.n[a]) % l.n[a];
-            inside = inside && at[a] >= 0 && at[a] < l.faceEnd(a);
-          }
-          if (inside) near[l.index(at[0], at[1], at[2])] = 1;
+    for (int dk = -1; dk <= f.count[2]; ++dk) {
+      const int k = inside(f.low[2] + dk, 2);
+      for (int dj = -1; k >= 0 && dj <= f.count[1]; ++dj) {
+        const int j = inside(f.low[1] + dj, 1);
+        if (j < 0) continue;
+        for (int di = -1; di <= f.count[0]; ++di) {
+          const int i = inside(f.low[0] + di, 0);
+          if (i >= 0) near[l.index(i, j, k)] = 1;
         }
       }
     }
@@ -130,13 +132,7 @@ void buildBodyRows(const MacGrid& grid, const SolidFractions& solids, const std:
       }
     }
   }
-  for (const BodyRows& slab : slabs) {
-    for (int a = 0; a < 3; ++a) {
-      out.normal[a].insert(out.normal[a].end(), slab.normal[a].begin(), slab.normal[a].end());
-      out.shear[a].insert(out.shear[a].end(), slab.shear[a].begin(), slab.shear[a].end());
-      out.drag[a].insert(out.drag[a].end(), slab.drag[a].begin(), slab.drag[a].end());
-    }
-  }
+  appendRows(slabs, out);
 }
 
 }  // namespace monolith

@@ -160,43 +160,46 @@ Eigen::Vector3d velocityAt(const Lattice& l, const FaceField<double>& velocity, 
 
 void extrapolateVelocity(const Lattice& l, int layers, bool no_slip, std::array<std::vector<std::uint8_t>, 3>& known,
                          FaceField<double>& velocity) {
-  // One list for each plane of faces, so that threads do not meet.
-  std::vector<std::vector<std::ptrdiff_t>> found(l.faceEnd(2));
-  for (int a = 0; a < 3; ++a) {
-    std::vector<double>& u = velocity[a];
-    std::vector<std::uint8_t>& mask = known[a];
-    const int planes = l.faceEnd(2);
-    for (int layer = 0; layer < layers; ++layer) {
-      fillHalo(l, u);
-      fillHalo(l, mask);
-      // Faces found in this layer are written, and only faces known before are read: these are marked afterwards.
-#pragma omp parallel for schedule(static, kPlanesInTurn)
-      for (int k = 0; k < planes; ++k) {
-        found[k].clear();
-        forEachNextToKnown(l, k, mask.data(), [&](std::ptrdiff_t f, const std::array<int, 3>&) {
-          double sum = 0.0;
-          int count = 0;
-          for (int b = 0; b < 3; ++b) {
-            for (const auto g : {f - l.stride[b], f + l.stride[b]}) {
-              if (!mask[g]) continue;
-              sum += u[g];
-              ++count;
-            }
-          }
-          u[f] = sum / count;
-          found[k].push_back(f);
-        });
-      }
-      bool any = false;
-#pragma omp parallel for schedule(static, kPlanesInTurn) reduction(|| : any)
-      for (int k = 0; k < planes; ++k) {
-        for (const auto f : found[k]) mask[f] = 1;
-        any = any || !found[k].empty();
-      }
-      if (!any) break;
+  // One list for each plane of faces of each axis, so that threads do not meet.
+  const int planes = l.faceEnd(2);
+  std::vector<std::vector<std::ptrdiff_t>> found(3 * planes);
+  for (int layer = 0; layer < layers; ++layer) {
+    for (int a = 0; a < 3; ++a) {
+      fillHalo(l, velocity[a]);
+      fillHalo(l, known[a]);
     }
-    fillHalo(l, mask);
-    mirrorIntoHalo(l, a, no_slip, u);
+    // Faces found in this layer are written, and only faces known before are read: these are marked afterwards.
+#pragma omp parallel for schedule(static, kPlanesInTurn)
+    for (int at = 0; at < 3 * planes; ++at) {
+      std::vector<double>& u = velocity[at / planes];
+      const std::vector<std::uint8_t>& mask = known[at / planes];
+      found[at].clear();
+      forEachNextToKnown(l, at % planes, mask.data(), [&](std::ptrdiff_t f, const std::array<int, 3>&) {
+        double sum = 0.0;
+        int count = 0;
+        for (int b = 0; b < 3; ++b) {
+          for (const auto g : {f - l.stride[b], f + l.stride[b]}) {
+            if (!mask[g]) continue;
+            sum += u[g];
+            ++count;
+          }
+        }
+        u[f] = sum / count;
+        found[at].push_back(f);
+      });
+    }
+    bool any = false;
+#pragma omp parallel for schedule(static, kPlanesInTurn) reduction(|| : any)
+    for (int at = 0; at < 3 * planes; ++at) {
+      for (const auto f : found[at]) known[at / planes][f] = 1;
+      any = any || !found[at].empty();
+    }
+    if (!any) break;
+  }
+#pragma omp parallel for schedule(dynamic)
+  for (int a = 0; a < 3; ++a) {
+    fillHalo(l, known[a]);
+    mirrorIntoHalo(l, a, no_slip, velocity[a]);
   }
 }
 
@@ -262,7 +265,7 @@ void advectCells(const MacGrid& grid, const FaceField<double>& velocity, const s
                  double band, std::vector<double>& moved) {
   const Lattice& l = grid.lattice;
   const double scale = dt / grid.h;
-  moved = field;
+  copyField(field, moved);
   forEachRowInTurn(l.n[1], l.n[2], [&](int j, int k) {
     const auto row = l.index(0, j, k);
     advectRow<1>(

@@ -7,6 +7,7 @@
 #include "fluid/interpolation.h"
 #include "geometry/cube_fraction.h"
 #include "solve/blocked_sum.h"
+#include "solve/whole_fields.h"
 
 namespace monolith {
 namespace {
@@ -120,8 +121,9 @@ void FreeSurface::redistance() {
   travelled_ = 0.0;
   const Lattice& l = grid_.lattice;
   std::vector<double>& next = scratch_.field;
-  next.assign(l.size, kFar);
-  std::vector<std::uint8_t> fixed(l.size, 0);
+  assignField(l.size, kFar, next);
+  std::vector<std::uint8_t>& fixed = scratch_.fixed;
+  assignZero(l.size, fixed);
   std::vector<char> crossed(l.n[2], 0);
   // Next to the surface: the distance to the plane that the level set is there.
 #pragma omp parallel for schedule(static, kPlanesInTurn)
@@ -186,7 +188,7 @@ void FreeSurface::redistance() {
 void FreeSurface::extendIntoSolids(const std::vector<double>& solid_distance) {
   if (full_ || empty_) return;
   const Lattice& l = grid_.lattice;
-  scratch_.field = distance_;
+  copyField(distance_, scratch_.field);
   const Eigen::Vector3d offset = nodeOffset(-1);
 #pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int k = 0; k < l.n[2]; ++k) {

@@ -61,6 +61,7 @@ class FreeSurface {
     Scratch(const Scratch&) {}
     Scratch& operator=(const Scratch&) { return *this; }
     std::vector<double> field;
+    std::vector<std::uint8_t> fixed;
   };
 
   void redistance();

@@ -3,7 +3,7 @@
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 
 #include <algorithm>
-#include <limits>
+#include <exception>
 #include <map>
 #include <stdexcept>
 #include <tuple>
@@ -43,11 +43,11 @@ bool collectPair(fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* pairs
 
 // A guard for what the samples of a mesh miss: FCL's closest pair, if nothing found comes near it.
 void appendClosestPair(const Part& a, const Part& b, double margin, std::vector<Contact>& contacts) {
-  double least = std::numeric_limits<double>::max();
-  for (const Contact& contact : contacts) least = std::min(least, contact.gap);
-  if (least <= 0.0) return;
-  const ClosestPair pair = findClosestPair(*a.object, *b.object);
-  if (pair.distance <= 0.0 || pair.distance > margin || pair.distance > least - 0.05 * margin) return;
+  double most = margin;
+  for (const Contact& contact : contacts) most = std::min(most, contact.gap - 0.05 * margin);
+  if (most <= 0.0) return;
+  const ClosestPair pair = findClosestPair(*a.object, *b.object, most);
+  if (pair.distance <= 0.0 || pair.distance >= most) return;
   const Vector3d offset = pair.on_a - pair.on_b;
   const double length = offset.norm();
   // Not taken on trust: iterative distances can end with points off the surfaces.
@@ -78,6 +78,13 @@ void appendPartContacts(const Part& a, const Part& b, double margin, std::vector
   }
   if (b.shape.kind != Shape::Kind::kSphere) appendClosestPair(a, b, margin, found);
   contacts.insert(contacts.end(), found.begin(), found.end());
+}
+
+void appendContactsWithWalls(const Part& part, const TankWalls& walls, double margin, std::vector<Contact>& contacts) {
+  if (!part.free) return;
+  static const std::vector<Vector3d> kNoVertices;
+  const auto& vertices = part.isMesh() ? part.surface->vertices() : kNoVertices;
+  appendWallContacts(part.body, part.shape, part.X_WG, vertices, walls, margin, contacts);
 }
 
 }  // namespace
@@ -151,30 +158,49 @@ std::vector<Contact> ContactDetector::detect(const std::vector<RigidBody>& bodie
                                 " bodies given, made for " + std::to_string(impl_->body_count));
   }
   impl_->place(bodies, margin);
+  const std::vector<Part>& parts = impl_->parts;
+  const std::vector<PartPair> pairs = impl_->nearPairs();
+  // Pairs and walls apart from each other, by whoever is free; what they find is taken in their order.
+  std::vector<std::vector<Contact>> found(pairs.size() + parts.size());
+  const auto find = [&](std::size_t job) {
+    if (job >= pairs.size()) {
+      appendContactsWithWalls(parts[job - pairs.size()], impl_->walls, margin, found[job]);
+      return;
+    }
+    const Part &a = parts[pairs[job].first], &b = parts[pairs[job].second];
+    appendPartContacts(a, b, margin, found[job]);
+    for (Contact& contact : found[job]) {
+      contact.body_a = a.body;
+      contact.body_b = b.body;
+    }
+  };
+  std::vector<std::exception_ptr> thrown(found.size());
+#pragma omp parallel for schedule(dynamic) if (!pairs.empty())
+  for (std::size_t job = 0; job < found.size(); ++job) {
+    try {
+      find(job);
+    } catch (...) {
+      thrown[job] = std::current_exception();
+    }
+  }
+  for (const std::exception_ptr& exception : thrown) {
+    if (exception) std::rethrow_exception(exception);
+  }
   std::vector<Contact> contacts;
   std::vector<Contact> of_pair;
-  const std::vector<PartPair> pairs = impl_->nearPairs();
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const Part &a = impl_->parts[pairs[i].first], &b = impl_->parts[pairs[i].second];
-    const std::size_t before = of_pair.size();
-    appendPartContacts(a, b, margin, of_pair);
-    for (std::size_t j = before; j < of_pair.size(); ++j) {
-      of_pair[j].body_a = a.body;
-      of_pair[j].body_b = b.body;
-    }
-    const bool last = i + 1 == pairs.size() || impl_->parts[pairs[i + 1].first].body != a.body ||
-                      impl_->parts[pairs[i + 1].second].body != b.body;
+    const Part &a = parts[pairs[i].first], &b = parts[pairs[i].second];
+    of_pair.insert(of_pair.end(), found[i].begin(), found[i].end());
+    const bool last =
+        i + 1 == pairs.size() || parts[pairs[i + 1].first].body != a.body || parts[pairs[i + 1].second].body != b.body;
     if (!last) continue;
     // Shapes of one body that meet flush have corners in the same place.
     mergeCoincident(of_pair, 1e-3 * margin);
     contacts.insert(contacts.end(), of_pair.begin(), of_pair.end());
     of_pair.clear();
   }
-  static const std::vector<Vector3d> kNoVertices;
-  for (const Part& part : impl_->parts) {
-    if (!part.free) continue;
-    const auto& vertices = part.isMesh() ? part.surface->vertices() : kNoVertices;
-    appendWallContacts(part.body, part.shape, part.X_WG, vertices, impl_->walls, margin, contacts);
+  for (std::size_t i = pairs.size(); i < found.size(); ++i) {
+    contacts.insert(contacts.end(), found[i].begin(), found[i].end());
   }
   return contacts;
 }

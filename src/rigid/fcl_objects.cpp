@@ -27,10 +27,10 @@ std::shared_ptr<fcl::CollisionGeometryd> makeCollisionGeometry(const Shape& shap
   throw std::invalid_argument("makeCollisionGeometry: unknown kind of shape " + shape.name);
 }
 
-ClosestPair findClosestPair(const fcl::CollisionObjectd& a, const fcl::CollisionObjectd& b) {
+ClosestPair findClosestPair(const fcl::CollisionObjectd& a, const fcl::CollisionObjectd& b, double most) {
   fcl::DistanceRequestd request;
   request.enable_nearest_points = true;
-  fcl::DistanceResultd result;
+  fcl::DistanceResultd result(most);
   const double distance = fcl::distance(&a, &b, request, result);
   return {distance > 0.0 ? distance : -1.0, result.nearest_points[0], result.nearest_points[1]};
 }

@@ -35,6 +35,8 @@ struct ClosestPair {
   Eigen::Vector3d on_a, on_b;
 };
 
-ClosestPair findClosestPair(const fcl::CollisionObjectd& a, const fcl::CollisionObjectd& b);
+// The closest pair of points if it is closer than `most` (m), which cuts the search short; else its distance is `most`,
+// and the points mean nothing.
+ClosestPair findClosestPair(const fcl::CollisionObjectd& a, const fcl::CollisionObjectd& b, double most);
 
 }  // namespace monolith

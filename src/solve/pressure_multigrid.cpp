@@ -193,14 +193,16 @@ void PressureMultigrid::findExtension(const Network& network, Level& level) cons
   const Lattice& l = level.lattice;
   level.extension.clear();
   std::vector<std::uint8_t> known(l.size);
+#pragma omp parallel for schedule(static) if (l.size >= kSizeWorthSharing)
   for (std::size_t c = 0; c < l.size; ++c) known[c] = network.kind[c] != kOutside;
   for (int axis = 0; axis < 3; ++axis) {
     const std::vector<std::uint8_t> before = known;
     const auto s = l.stride[axis];
-    int low[3] = {-1, -1, -1}, high[3] = {l.n[0] + 1, l.n[1] + 1, l.n[2] + 1};
-    for (int k = low[2]; k < high[2]; ++k) {
-      for (int j = low[1]; j < high[1]; ++j) {
-        for (int i = low[0]; i < high[0]; ++i) {
+    std::vector<std::vector<Extension>> planes(l.n[2] + 2);
+#pragma omp parallel for schedule(static, kPlanesInTurn) if (l.size >= kSizeWorthSharing)
+    for (int k = -1; k <= l.n[2]; ++k) {
+      for (int j = -1; j <= l.n[1]; ++j) {
+        for (int i = -1; i <= l.n[0]; ++i) {
           const int at[3] = {i, j, k};
           const auto c = l.index(i, j, k);
           if (before[c]) continue;
@@ -208,11 +210,12 @@ void PressureMultigrid::findExtension(const Network& network, Level& level) cons
           if (!below && !above) continue;
           const auto a = static_cast<std::int32_t>(below ? c - s : c + s);
           const auto b = static_cast<std::int32_t>(above ? c + s : c - s);
-          level.extension.push_back({static_cast<std::int32_t>(c), a, b});
+          planes[k + 1].push_back({static_cast<std::int32_t>(c), a, b});
           known[c] = 1;
         }
       }
     }
+    for (const auto& plane : planes) level.extension.insert(level.extension.end(), plane.begin(), plane.end());
   }
 }
 

@@ -20,20 +20,25 @@ void SteadyRows::update(const Lattice& l, const std::vector<std::uint8_t>& kinds
   const int rows = l.n[1], planes = l.n[2];
   steady_.assign(static_cast<std::size_t>(rows + 1) * (planes + 1), 0);
   if (comparable) {
-    std::vector<std::uint8_t> same(kinds.size());
-    for (std::size_t i = 0; i < kinds.size(); ++i) same[i] = kinds[i] != kChanging && kinds[i] == kinds_[i];
     const auto at = [&](int index, int axis) {
       return l.periodic[axis] ? (index + kReach * l.n[axis]) % l.n[axis] : std::clamp(index, 0, l.n[axis] - 1);
     };
-    for (int k = 0; k <= planes; ++k) {
+    // Along one axis after the other.
+    std::vector<std::uint8_t> same(kinds.size()), along(static_cast<std::size_t>(rows + 1) * planes, 1);
+    for (std::size_t i = 0; i < kinds.size(); ++i) same[i] = kinds[i] != kChanging && kinds[i] == kinds_[i];
+    for (int k = 0; k < planes; ++k) {
       for (int j = 0; j <= rows; ++j) {
-        bool all = true;
-        for (int dk = -kReach; all && dk <= kReach; ++dk) {
-          for (int dj = -kReach; all && dj <= kReach; ++dj) {
-            all = same[at(j + dj, 1) + static_cast<std::size_t>(rows) * at(k + dk, 2)] != 0;
-          }
+        for (int d = -kReach; d <= kReach; ++d) {
+          along[j + static_cast<std::size_t>(rows + 1) * k] &= same[at(j + d, 1) + static_cast<std::size_t>(rows) * k];
         }
-        steady_[j + static_cast<std::size_t>(rows + 1) * k] = all;
+      }
+    }
+    std::fill(steady_.begin(), steady_.end(), 1);
+    for (int k = 0; k <= planes; ++k) {
+      for (int d = -kReach; d <= kReach; ++d) {
+        const std::uint8_t* from = along.data() + static_cast<std::size_t>(rows + 1) * at(k + d, 2);
+        std::uint8_t* to = steady_.data() + static_cast<std::size_t>(rows + 1) * k;
+        for (int j = 0; j <= rows; ++j) to[j] &= from[j];
       }
     }
   }

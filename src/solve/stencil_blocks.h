@@ -331,14 +331,20 @@ void StencilBlocks<Real, Count>::findLost(int components, const Last& before) {
   lost_.clear();
   if (anew_) return;
   const int rows = lattice_.faceEnd(1);
-  for (std::size_t at = 0; at + 1 < row_begin_.size(); ++at) {
-    auto now = row_begin_[at];
-    for (auto b = before.row_begin[at]; b < before.row_begin[at + 1]; ++b) {
-      while (now < row_begin_[at + 1] && blocks_[now].place < before.blocks[b].place) ++now;
-      if (now < row_begin_[at + 1] && blocks_[now].place == before.blocks[b].place) continue;
-      lost_.push_back({static_cast<std::int32_t>(at / rows % components), before.blocks[b].place});
+  const auto plane_rows = static_cast<std::size_t>(components) * rows;
+  std::vector<std::vector<Lost>> planes(lattice_.faceEnd(2));
+#pragma omp parallel for schedule(static, kPlanesInTurn)
+  for (std::size_t k = 0; k < planes.size(); ++k) {
+    for (std::size_t at = k * plane_rows; at < (k + 1) * plane_rows; ++at) {
+      auto now = row_begin_[at];
+      for (auto b = before.row_begin[at]; b < before.row_begin[at + 1]; ++b) {
+        while (now < row_begin_[at + 1] && blocks_[now].place < before.blocks[b].place) ++now;
+        if (now < row_begin_[at + 1] && blocks_[now].place == before.blocks[b].place) continue;
+        planes[k].push_back({static_cast<std::int32_t>(at / rows % components), before.blocks[b].place});
+      }
     }
   }
+  for (const auto& plane : planes) lost_.insert(lost_.end(), plane.begin(), plane.end());
 }
 
 }  // namespace monolith

@@ -1,5 +1,5 @@
 #pragma once
-// Long arrays of zeros, and copies of long arrays, written by all threads.
+// Long arrays of one value, and copies of long arrays, written by all threads.
 
 #include <cstddef>
 #include <vector>
@@ -7,10 +7,15 @@
 namespace monolith {
 
 template <class Value>
-void assignZero(std::size_t size, std::vector<Value>& v) {
+void assignField(std::size_t size, Value value, std::vector<Value>& v) {
   v.resize(size);
 #pragma omp parallel for simd schedule(static)
-  for (std::size_t i = 0; i < size; ++i) v[i] = Value(0);
+  for (std::size_t i = 0; i < size; ++i) v[i] = value;
+}
+
+template <class Value>
+void assignZero(std::size_t size, std::vector<Value>& v) {
+  assignField(size, Value(0), v);
 }
 
 template <class Value>

@@ -15,7 +15,6 @@ struct CouplingScene {
   MacGrid grid;
   std::vector<RigidBody> bodies;
   SolidFractions solids;
-  std::vector<StickingLiquid> sticking;
   std::vector<double> liquid;
   StaggeredCoefficients<double> coefficients;
   BodyRows rows;
@@ -47,7 +46,6 @@ struct CouplingScene {
       bodies.push_back(makeRigidBody(body, 0.05));
     }
     SolidSampler(grid).sample(bodies, solids);
-    if (number >= 0.05) attachStickingLiquid(grid, solids, sticking);
     const Lattice& l = grid.lattice;
     const double fill = endless || seed % 2 ? 100.0 : 5.0 + 4.0 * unit(random);
     liquid.assign(l.size, 0.0);
@@ -57,6 +55,7 @@ struct CouplingScene {
       }
     }
     extendIntoHalo(l, liquid);
+    if (number >= 0.05) attachStickingLiquid(grid, bodies, liquid, solids);
     const StokesGeometry geometry{&solids.fluid, &solids.distance, &liquid, &solids.cell_distance};
     buildCoefficients(l, geometry, number, coefficients);
     buildBodyRows(grid, solids, bodies, geometry, coefficients, rows);
