@@ -100,7 +100,7 @@ struct Simulation::Impl {
   bool predicted = false;  // second order: `solids` are at the poses that were solved with
   BodyPlan plan;           // of the last solve
   std::vector<FreeSurface> step_surface;
-  FaceField<double> carried;  // velocity that the liquid at each face had at the start of the step
+  FaceField<double> carried;  // velocity that the liquid at each face of the solve had at the start of the step
   // Within a sub-step only, kept for their memory.
   struct Scratch {
     FaceField<double> free_velocity;

@@ -56,14 +56,24 @@ void Simulation::Impl::prepareSolve(const StepWeights& w) {
   step_surface[0].extendIntoSolids(solids.cell_distance);
 }
 
-// What the accelerations that particles keep would add is in free_velocity with the rest.
+// Of the faces that the solve has, to which it is assembled. What the accelerations that particles keep would add is in
+// free_velocity with the rest.
 void Simulation::Impl::advectLiquid(const StepWeights& w, FaceField<double>& free_velocity) {
+  auto& wanted = scratch.known;
+  for (int a = 0; a < 3; ++a) {
+    const double* mass = system.problem().coefficients.mass[a].data();
+    const std::uint8_t* known = state.known[a].data();
+    wanted[a].resize(grid.lattice.size);
+    std::uint8_t* to = wanted[a].data();
+#pragma omp parallel for simd schedule(static)
+    for (std::size_t i = 0; i < grid.lattice.size; ++i) to[i] = known[i] & (mass[i] > 0.0 ? 1 : 0);
+  }
   const bool gains = w.order == 2 && hasLiquid();
   if (gains) {
-    advectAccelerated(grid, state.coupled.velocity, state.acceleration, state.known, w.dt, carried, free_velocity,
+    advectAccelerated(grid, state.coupled.velocity, state.acceleration, wanted, w.dt, carried, free_velocity,
                       scratch.other.velocity);
   } else {
-    advectVelocity(grid, state.coupled.velocity, state.known, w.dt, carried);
+    advectVelocity(grid, state.coupled.velocity, wanted, w.dt, carried);
   }
   for (int a = 0; a < 3; ++a) {
     const std::size_t size = carried[a].size();
@@ -105,10 +115,6 @@ CoupledReport Simulation::Impl::solveWithLiquid(const StepWeights& w, const std:
   const LiquidDescription& liquid = scene.liquid;
   FaceField<double>& free_velocity = scratch.free_velocity;
   {
-    const StageClock clock(step.times.advection);
-    advectLiquid(w, free_velocity);
-  }
-  {
     const StageClock clock(step.times.geometry);
     prepareSolve(w);
     const auto& distance = step_surface[0].distance();
@@ -117,6 +123,10 @@ CoupledReport Simulation::Impl::solveWithLiquid(const StepWeights& w, const std:
     } else {
       system.assemble(solids, plan.bodies, distance, liquid.density, liquid.dynamic_viscosity, w.implicit);
     }
+  }
+  {
+    const StageClock clock(step.times.advection);
+    advectLiquid(w, free_velocity);
   }
   const StageClock clock(step.times.solve);
   std::vector<Contact> scaled = contacts;  // the solve divides gaps by what it takes for the step
