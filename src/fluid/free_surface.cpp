@@ -19,23 +19,88 @@ constexpr double kLargestShift = 0.1;      // cells in one correction
 // as that, which is further than anyone looks.
 constexpr double kBand = 6.0;
 constexpr double kLongestWay = kBand - 1.0;  // cells in one advection, kTravelToRedistance being undone before the next
-constexpr int kBandPlanes = static_cast<int>(kBand);  // its reach along an axis
 constexpr double kSampleBeyondSolid = 0.75;  // cells: outside, where the value is the liquid's own
 
-// Solution of the discrete eikonal equation at a cell from its nearest neighbours along each axis.
-double eikonal(std::array<double, 3> d) {
-  std::sort(d.begin(), d.end());
-  double x = d[0] + 1.0;
-  if (x > d[1]) {
-    x = 0.5 * (d[0] + d[1] + std::sqrt(std::max(0.0, 2.0 - (d[0] - d[1]) * (d[0] - d[1]))));
-    if (x > d[2]) {
-      const double sum = d[0] + d[1] + d[2];
-      const double squares = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-      x = (sum + std::sqrt(std::max(0.0, sum * sum - 3.0 * (squares - 1.0)))) / 3.0;
-    }
-  }
-  return x;
+// Solution of the discrete eikonal equation at a cell from its nearest neighbours along each axis; without branches,
+// for the vector units.
+inline double eikonal(double a, double b, double c) {
+  const double low = std::min(a, b), high = std::max(a, b);
+  const double first = std::min(low, c), third = std::max(high, c);
+  const double second = std::max(low, std::min(high, c));
+  const double apart = first - second;
+  const double sum = first + second + third;
+  const double squares = first * first + second * second + third * third;
+  const double one = first + 1.0;
+  const double two = 0.5 * (first + second + std::sqrt(std::max(0.0, 2.0 - apart * apart)));
+  const double three = (sum + std::sqrt(std::max(0.0, sum * sum - 3.0 * (squares - 1.0)))) / 3.0;
+  const double not_one = two > third ? three : two;
+  return one > second ? not_one : one;
 }
+
+// Of a row of cells.
+struct Range {
+  double least = kFar, most = kFar;
+};
+
+// Half a pass over a row of cells: those of one colour, every other one from `first` on, that are neither fixed nor
+// settled. Reads the other colour only.
+Range relaxRow(const Lattice& l, std::ptrdiff_t row, int first, const std::uint8_t* fixed, double settled,
+               std::vector<double>& field) {
+  const int width = l.n[0];
+  thread_local std::vector<double> wide;
+  wide.resize(width);
+  double* out = wide.data();
+  double* d = field.data() + row;
+  const std::uint8_t* stays = fixed + row;
+  const auto sy = l.stride[1], sz = l.stride[2];
+  // Of values, not of references as std::min: those are not loaded by vectors.
+  const auto lesser = [](double a, double b) { return a < b ? a : b; };
+#pragma omp simd
+  for (int i = 0; i < width; ++i) {
+    const double at = d[i], x = lesser(d[i - 1], d[i + 1]), y = lesser(d[i - sy], d[i + sy]),
+                 z = lesser(d[i - sz], d[i + sz]);
+    const double solved = lesser(at, eikonal(x, y, z));
+    const bool changes = (lesser(lesser(x, y), z) < kBand) & (at > settled) & (stays[i] == 0);
+    out[i] = changes ? solved : at;
+  }
+  for (int i = first; i < width; i += 2) d[i] = out[i];
+  double least = kFar, most = 0.0;
+#pragma omp simd reduction(min : least) reduction(max : most)
+  for (int i = 0; i < width; ++i) {
+    least = std::min(least, d[i]);
+    most = std::max(most, d[i]);
+  }
+  return {least, most};
+}
+
+// What the rows of a lattice hold.
+class RowRanges {
+ public:
+  explicit RowRanges(const Lattice& l) : l_(l), ranges_(static_cast<std::size_t>(l.n[1]) * l.n[2]) {}
+
+  Range& at(int j, int k) { return ranges_[j + static_cast<std::size_t>(l_.n[1]) * k]; }
+  // Of a row and those beside it.
+  double leastAround(int j, int k) const {
+    double least = kFar;
+    for (const auto& [dj, dk] :
+         {std::pair(0, 0), std::pair(-1, 0), std::pair(1, 0), std::pair(0, -1), std::pair(0, 1)}) {
+      const int at_j = inside(j + dj, 1), at_k = inside(k + dk, 2);
+      if (at_j >= 0 && at_k >= 0) {
+        least = std::min(least, ranges_[at_j + static_cast<std::size_t>(l_.n[1]) * at_k].least);
+      }
+    }
+    return least;
+  }
+
+ private:
+  int inside(int at, int axis) const {
+    if (l_.periodic[axis]) return (at + l_.n[axis]) % l_.n[axis];
+    return at < l_.n[axis] ? at : -1;
+  }
+
+  const Lattice& l_;
+  std::vector<Range> ranges_;
+};
 
 }  // namespace
 
@@ -124,7 +189,7 @@ void FreeSurface::redistance() {
   assignField(l.size, kFar, next);
   std::vector<std::uint8_t>& fixed = scratch_.fixed;
   assignZero(l.size, fixed);
-  std::vector<char> crossed(l.n[2], 0);
+  RowRanges ranges(l);
   // Next to the surface: the distance to the plane that the level set is there.
 #pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int k = 0; k < l.n[2]; ++k) {
@@ -151,7 +216,7 @@ void FreeSurface::redistance() {
         if (!near) continue;
         next[c] = std::abs(d) / std::max(std::sqrt(slope2), 0.1);
         fixed[c] = 1;
-        crossed[k] = 1;
+        ranges.at(j, k).least = std::min(ranges.at(j, k).least, next[c]);
       }
     }
   }
@@ -161,21 +226,13 @@ void FreeSurface::redistance() {
   for (int pass = 0; pass < passes; ++pass) {
     const double settled = (pass - 1) / std::sqrt(3.0);
     fillHalo(l, next);
-#pragma omp parallel for schedule(static, kPlanesInTurn)
+    const RowRanges before = ranges;
+#pragma omp parallel for schedule(dynamic)
     for (int k = 0; k < l.n[2]; ++k) {
-      // Planes that the band does not reach.
-      const auto near = crossed.begin() + std::max(0, k - kBandPlanes);
-      const auto far = crossed.begin() + std::min(l.n[2], k + kBandPlanes + 1);
-      if (!l.periodic[2] && std::find(near, far, 1) == far) continue;
       for (int j = 0; j < l.n[1]; ++j) {
-        for (int i = (j + k + pass) & 1; i < l.n[0]; i += 2) {
-          const auto c = l.index(i, j, k);
-          if (fixed[c] || next[c] <= settled) continue;
-          std::array<double, 3> d;
-          for (int a = 0; a < 3; ++a) d[a] = std::min(next[c - l.stride[a]], next[c + l.stride[a]]);
-          if (std::min({d[0], d[1], d[2]}) >= kBand) continue;
-          next[c] = std::min(next[c], eikonal(d));
-        }
+        // Rows that the surface has not reached yet, or in which all is settled.
+        if (ranges.at(j, k).most <= settled || before.leastAround(j, k) >= kBand) continue;
+        ranges.at(j, k) = relaxRow(l, l.index(0, j, k), (j + k + pass) & 1, fixed.data(), settled, next);
       }
     }
   }
