@@ -159,32 +159,35 @@ Eigen::Vector3d velocityAt(const Lattice& l, const FaceField<double>& velocity, 
 }
 
 void extrapolateVelocity(const Lattice& l, int layers, bool no_slip, std::array<std::vector<std::uint8_t>, 3>& known,
-                         FaceField<double>& velocity) {
+                         const std::vector<FaceField<double>*>& fields) {
   // One list for each plane of faces of each axis, so that threads do not meet.
   const int planes = l.faceEnd(2);
   std::vector<std::vector<std::ptrdiff_t>> found(3 * planes);
   for (int layer = 0; layer < layers; ++layer) {
     for (int a = 0; a < 3; ++a) {
-      fillHalo(l, velocity[a]);
+      for (FaceField<double>* field : fields) fillHalo(l, (*field)[a]);
       fillHalo(l, known[a]);
     }
     // Faces found in this layer are written, and only faces known before are read: these are marked afterwards.
 #pragma omp parallel for schedule(static, kPlanesInTurn)
     for (int at = 0; at < 3 * planes; ++at) {
-      std::vector<double>& u = velocity[at / planes];
-      const std::vector<std::uint8_t>& mask = known[at / planes];
+      const int axis = at / planes;
+      const std::vector<std::uint8_t>& mask = known[axis];
       found[at].clear();
       forEachNextToKnown(l, at % planes, mask.data(), [&](std::ptrdiff_t f, const std::array<int, 3>&) {
-        double sum = 0.0;
+        std::array<std::ptrdiff_t, 6> near;
         int count = 0;
         for (int b = 0; b < 3; ++b) {
           for (const auto g : {f - l.stride[b], f + l.stride[b]}) {
-            if (!mask[g]) continue;
-            sum += u[g];
-            ++count;
+            if (mask[g]) near[count++] = g;
           }
         }
-        u[f] = sum / count;
+        for (FaceField<double>* field : fields) {
+          double* u = (*field)[axis].data();
+          double sum = 0.0;
+          for (int n = 0; n < count; ++n) sum += u[near[n]];
+          u[f] = sum / count;
+        }
         found[at].push_back(f);
       });
     }
@@ -196,11 +199,10 @@ void extrapolateVelocity(const Lattice& l, int layers, bool no_slip, std::array<
     }
     if (!any) break;
   }
+  for (int a = 0; a < 3; ++a) fillHalo(l, known[a]);
+  const int count = 3 * static_cast<int>(fields.size());
 #pragma omp parallel for schedule(dynamic)
-  for (int a = 0; a < 3; ++a) {
-    fillHalo(l, known[a]);
-    mirrorIntoHalo(l, a, no_slip, velocity[a]);
-  }
+  for (int i = 0; i < count; ++i) mirrorIntoHalo(l, i % 3, no_slip, (*fields[i / 3])[i % 3]);
 }
 
 double advectFace(const Lattice& l, const FaceField<double>& velocity, int axis, const std::array<int, 3>& face,

@@ -10,11 +10,12 @@
 
 namespace monolith {
 
-// Spreads velocities from faces where known[a] is set to those within `layers` of them (mean of the known neighbours),
-// marking these known, and into the halo: odd across a wall for the normal component and, with no slip, for the
-// tangential ones; even otherwise.
+// Spreads velocities, or their rates, from faces where known[a] is set to those within `layers` of them (mean of the
+// known neighbours), marking these known, and into the halo: odd across a wall for the normal component and, with no
+// slip, for the tangential ones; even otherwise.
 void extrapolateVelocity(const Lattice& lattice, int layers, bool no_slip,
-                         std::array<std::vector<std::uint8_t>, 3>& known, FaceField<double>& velocity);
+                         std::array<std::vector<std::uint8_t>, 3>& known,
+                         const std::vector<FaceField<double>*>& fields);
 
 // The velocity at the foot of the trajectory that arrives at a face; scale: dt/h. Halos must be filled.
 double advectFace(const Lattice& lattice, const FaceField<double>& velocity, int axis, const std::array<int, 3>& face,

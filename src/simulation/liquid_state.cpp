@@ -16,19 +16,19 @@ constexpr double kLeastSlope = 0.25;  // of the level set, per cell
 
 // Faces in air next to known ones go on with the slope that the velocity has in the liquid, mean over the directions
 // that tell one: held constant instead, velocity at the surface would be that of up to half a cell below it.
-void continueIntoAir(const Lattice& l, const SolidFractions& solids, FaceField<double>& velocity,
-                     std::array<std::vector<std::uint8_t>, 3>& known) {
+void continueIntoAir(const Lattice& l, const SolidFractions& solids, const std::vector<FaceField<double>*>& fields,
+                     FaceMask& known) {
   std::vector<std::uint8_t> before;
   for (int a = 0; a < 3; ++a) {
-    std::vector<double>& u = velocity[a];
-    fillHalo(l, u);
+    for (FaceField<double>* field : fields) fillHalo(l, (*field)[a]);
     fillHalo(l, known[a]);
     copyField(known[a], before);
 #pragma omp parallel for schedule(static, kPlanesInTurn)
     for (int k = 0; k < l.faceEnd(2); ++k) {
       forEachNextToKnown(l, k, before.data(), [&](std::ptrdiff_t f, const std::array<int, 3>& at) {
         if (!(solids.distance[a][f] > 0.0 && solids.fluid[a][f] > 0.0)) return;
-        double sum = 0.0;
+        std::array<std::pair<std::ptrdiff_t, std::ptrdiff_t>, 6>
+            slopes;  // from the face that is far to the one that is near
         int count = 0;
         for (int b = 0; b < 3; ++b) {
           for (const int step : {-1, 1}) {
@@ -37,13 +37,16 @@ void continueIntoAir(const Lattice& l, const SolidFractions& solids, FaceField<d
             if (!inside && !l.periodic[b]) continue;
             const auto near = f + step * l.stride[b];
             const auto far = near + step * l.stride[b] - (inside ? 0 : step * l.n[b] * l.stride[b]);
-            if (!before[near] || !before[far]) continue;
-            sum += 2.0 * u[near] - u[far];
-            ++count;
+            if (before[near] && before[far]) slopes[count++] = {far, near};
           }
         }
         if (count == 0) return;
-        u[f] = sum / count;
+        for (FaceField<double>* field : fields) {
+          double* u = (*field)[a].data();
+          double sum = 0.0;
+          for (int n = 0; n < count; ++n) sum += 2.0 * u[slopes[n].second] - u[slopes[n].first];
+          u[f] = sum / count;
+        }
         known[a][f] = 1;
       });
     }
@@ -92,41 +95,62 @@ double largestSpeed(const FaceField<double>& velocity) {
   return std::sqrt(sum);
 }
 
-void completeVelocity(const MacGrid& grid, const StepProblem& problem, const SolidFractions& solids,
-                      const std::vector<RigidBody>& bodies, int layers, bool no_slip,
-                      const std::array<std::vector<std::uint8_t>, 3>* usable, FaceField<double>& velocity,
-                      std::array<std::vector<std::uint8_t>, 3>& known) {
-  const Lattice& l = grid.lattice;
+void markResolved(const StepProblem& problem, FaceMask& mask) {
+  const Lattice& l = problem.grid.lattice;
   for (int a = 0; a < 3; ++a) {
-    assignZero(l.size, known[a]);
-    const int width = l.faceEnd(0);
+    assignZero(l.size, mask[a]);
+    forEachRow(l,
+               [&](std::ptrdiff_t row, int, int) { problem.markResolved(a, row, l.faceEnd(0), mask[a].data() + row); });
+  }
+}
+
+bool intersect(const FaceMask& mask, const FaceMask& other, FaceMask& both) {
+  int lost = 0;
+  for (int a = 0; a < 3; ++a) {
+    const std::size_t size = mask[a].size();
+    both[a].resize(size);
+    const std::uint8_t *x = mask[a].data(), *y = other[a].data();
+    std::uint8_t* out = both[a].data();
+#pragma omp parallel for simd schedule(static) reduction(| : lost)
+    for (std::size_t i = 0; i < size; ++i) {
+      out[i] = x[i] & y[i];
+      lost |= x[i] & ~y[i];
+    }
+  }
+  return lost != 0;
+}
+
+void completeMotion(const SolidFractions& solids, const MacGrid& grid, const std::vector<RigidBody>& bodies, int layers,
+                    bool no_slip, const std::vector<LiquidField>& fields, FaceMask& known) {
+  const Lattice& l = grid.lattice;
+  const int width = l.faceEnd(0);
+  for (int a = 0; a < 3; ++a) {
     forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
       std::uint8_t* has = known[a].data() + row;
-      problem.markResolved(a, row, width, has);
-      if (usable != nullptr) {
-        const std::uint8_t* wanted = (*usable)[a].data() + row;
-        for (int i = 0; i < width; ++i) has[i] &= wanted[i];
-      }
       if (std::memchr(has, 0, width) == nullptr) return;
       for (int i = 0; i < width; ++i) {
         if (has[i]) continue;
         const auto f = row + i;
-        velocity[a][f] = 0.0;
+        for (const LiquidField& field : fields) (*field.values)[a][f] = 0.0;
         if (solids.distance[a][f] > 0.0) continue;
         const int owner = solids.owner[a][f];
         const bool wall_face = owner < 0;
         if (wall_face) {
-          known[a][f] = 1;
+          has[i] = 1;
         } else if (no_slip) {
           const Eigen::Vector3d x = grid.faceCenter(a, i, j, k);
-          velocity[a][f] = bodies[owner].velocityAt(x + grid.toNearestImage(x, bodies[owner].p_WBcm))[a];
-          known[a][f] = 1;
+          const Eigen::Vector3d& p_WBcm = bodies[owner].p_WBcm;
+          const Vector6d point = velocityRow(a, x + grid.toNearestImage(x, p_WBcm), p_WBcm);
+          for (const LiquidField& field : fields) (*field.values)[a][f] = point.dot((*field.of_bodies)[owner]);
+          has[i] = 1;
         }
       }
     });
   }
-  continueIntoAir(l, solids, velocity, known);
-  extrapolateVelocity(l, layers, no_slip, known, velocity);
+  std::vector<FaceField<double>*> values;
+  for (const LiquidField& field : fields) values.push_back(field.values);
+  continueIntoAir(l, solids, values, known);
+  extrapolateVelocity(l, layers, no_slip, known, values);
 }
 
 std::vector<double> hydrostaticPressure(const MacGrid& grid, const FreeSurface& surface, double density,

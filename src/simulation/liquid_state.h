@@ -20,12 +20,24 @@ void setVelocity(const MacGrid& grid, const std::function<Eigen::Vector3d(const 
 // Norm of the largest components of a velocity at faces: no point of the liquid is faster.
 double largestSpeed(const FaceField<double>& velocity);
 
-// Marks the faces whose velocity is known, gives faces inside bodies the bodies' velocity where it sticks to them, and
-// spreads the rest into solids and air. `usable`: faces that may be known at all; nullptr: all.
-void completeVelocity(const MacGrid& grid, const StepProblem& problem, const SolidFractions& solids,
-                      const std::vector<RigidBody>& bodies, int layers, bool no_slip,
-                      const std::array<std::vector<std::uint8_t>, 3>* usable, FaceField<double>& velocity,
-                      std::array<std::vector<std::uint8_t>, 3>& known);
+using FaceMask = std::array<std::vector<std::uint8_t>, 3>;  // 1 or 0, by axes
+
+// The faces whose velocity the solve tells.
+void markResolved(const StepProblem& problem, FaceMask& mask);
+
+// both = mask and other. Returns whether that is less than mask.
+bool intersect(const FaceMask& mask, const FaceMask& other, FaceMask& both);
+
+// A velocity of the liquid, or its rate, and the bodies' twists, or their rates.
+struct LiquidField {
+  FaceField<double>* values;
+  const std::vector<Vector6d>* of_bodies;
+};
+
+// Gives faces inside bodies the bodies' motion where the liquid sticks to them, and spreads what is known into solids
+// and air, marking it known.
+void completeMotion(const SolidFractions& solids, const MacGrid& grid, const std::vector<RigidBody>& bodies, int layers,
+                    bool no_slip, const std::vector<LiquidField>& fields, FaceMask& known);
 
 // Pressure of the liquid at rest: where it is exact the first solve has nothing to do.
 std::vector<double> hydrostaticPressure(const MacGrid& grid, const FreeSurface& surface, double density,

@@ -39,7 +39,7 @@ struct SimulationState {
   std::vector<RigidBody> bodies;
   std::vector<FreeSurface> surface;  // exactly one; a vector because it has no default
   CoupledState coupled;
-  std::array<std::vector<std::uint8_t>, 3> known;
+  FaceMask known;
   FaceField<double> acceleration;                 // m/s^2, of the liquid's particles, mean over the last sub-step
   std::vector<Vector6d> body_acceleration;        // likewise
   std::vector<Wrench> mean_liquid, mean_contact;  // over the last output step
@@ -107,7 +107,7 @@ struct Simulation::Impl {
     // Until the solve has converged what is to come, from then on what was; its velocities are work space before the
     // solve and after what was has served.
     CoupledState other;
-    std::array<std::vector<std::uint8_t>, 3> known_before, known;
+    FaceMask known_before, known;
     double typical_viscosity = 0.0;  // Pa s, of the solve, of a non-Newtonian liquid
   } scratch;
   CoupledSystem system;

@@ -179,14 +179,15 @@ void Simulation::Impl::moveLiquid(const StepWeights& w, StepReport& step) {
   const int most = *std::max_element(grid.lattice.n.begin(), grid.lattice.n.end());
   const double reach = std::ceil(std::max(step.maximum_speed, bodySpeed()) * w.dt / grid.h);
   const int layers = static_cast<int>(std::min(reach, static_cast<double>(most))) + 3;
-  std::vector<RigidBody> moving = plan.bodies;
-  for (std::size_t b = 0; b < moving.size(); ++b) moving[b].twist = state.coupled.twists[b];
-  auto& known_before = scratch.known_before;
-  std::swap(known_before, state.known);
-  completeVelocity(grid, system.problem(), solids, moving, layers, noSlip(), nullptr, state.coupled.velocity,
-                   state.known);
-  if (secondOrder()) {
-    for (std::size_t b = 0; b < moving.size(); ++b) moving[b].twist = state.body_acceleration[b];
+  const auto complete = [&](const std::vector<LiquidField>& fields, FaceMask& known) {
+    completeMotion(solids, grid, plan.bodies, layers, noSlip(), fields, known);
+  };
+  const LiquidField velocity{&state.coupled.velocity, &state.coupled.twists};
+  std::swap(scratch.known_before, state.known);
+  markResolved(system.problem(), state.known);
+  if (!secondOrder()) {
+    complete({velocity}, state.known);
+  } else {
     FaceField<double>& acceleration = state.acceleration;
     for (int a = 0; a < 3; ++a) {
       acceleration[a].resize(grid.lattice.size);
@@ -195,8 +196,14 @@ void Simulation::Impl::moveLiquid(const StepWeights& w, StepReport& step) {
         acceleration[a][i] = (state.coupled.velocity[a][i] - carried[a][i]) / w.dt;
       }
     }
-    completeVelocity(grid, system.problem(), solids, moving, layers, noSlip(), &known_before, acceleration,
-                     scratch.known);
+    // Known where the velocity was before and is now: everywhere, as a rule.
+    const LiquidField rate{&acceleration, &state.body_acceleration};
+    if (intersect(state.known, scratch.known_before, scratch.known)) {
+      complete({velocity}, state.known);
+      complete({rate}, scratch.known);
+    } else {
+      complete({velocity, rate}, state.known);
+    }
   }
   if (w.order == 2) {
     if (hasSurface()) {
