@@ -14,11 +14,12 @@ constexpr double kHalfDiagonal = 0.8662;
 
 void octantFractions(const SignedDistance& solid, const Eigen::Vector3d& center, const Eigen::Matrix3d& R_WB,
                      double width, Octants& out) {
-  const auto corner = [&](int o, double by) -> Eigen::Vector3d {
-    return R_WB.transpose() * (by * Eigen::Vector3d((o & 1) ? 1 : -1, (o & 2) ? 1 : -1, (o & 4) ? 1 : -1));
-  };
+  std::array<Eigen::Vector3d, 8> corner;  // of a cube of half width one, in the solid's frame
   for (int o = 0; o < 8; ++o) {
-    const Eigen::Vector3d octant = center + corner(o, 0.25 * width);
+    corner[o] = R_WB.transpose() * Eigen::Vector3d((o & 1) ? 1 : -1, (o & 2) ? 1 : -1, (o & 4) ? 1 : -1);
+  }
+  for (int o = 0; o < 8; ++o) {
+    const Eigen::Vector3d octant = center + 0.25 * width * corner[o];
     const double distance = solid.distance(octant);
     if (std::abs(distance) > kHalfDiagonal * 0.5 * width) {
       out[o] = distance < 0.0 ? 1.0 : 0.0;
@@ -26,7 +27,7 @@ void octantFractions(const SignedDistance& solid, const Eigen::Vector3d& center,
     }
     double sum = 0.0;
     for (int q = 0; q < 8; ++q) {
-      const DistanceSample s = solid.sample(octant + corner(q, 0.125 * width));
+      const DistanceSample s = solid.sample(octant + 0.125 * width * corner[q]);
       if (std::abs(s.distance) > kHalfDiagonal * 0.25 * width) {
         sum += s.distance < 0.0 ? 1.0 : 0.0;
         continue;

@@ -11,10 +11,11 @@ double insideFraction(double distance, const Eigen::Vector3d& gradient, double w
   const double total = slope.sum();
   if (!(total > 0.0)) return distance < 0.0 ? 1.0 : 0.0;
   // The plane n . x = alpha in the unit cube with n >= 0, sum n = 1; the solid is below it.
-  const double alpha = 0.5 - distance * gradient.norm() / (width * total);
+  const double scale = 1.0 / total;
+  const double alpha = 0.5 - distance * gradient.norm() * scale / width;
   if (alpha <= 0.0) return 0.0;
   if (alpha >= 1.0) return 1.0;
-  std::array<double, 3> n = {slope[0] / total, slope[1] / total, slope[2] / total};
+  std::array<double, 3> n = {slope[0] * scale, slope[1] * scale, slope[2] * scale};
   const auto order = [&](int i, int j) {
     const double less = std::min(n[i], n[j]);
     n[j] = std::max(n[i], n[j]);

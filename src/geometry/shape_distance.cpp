@@ -76,10 +76,17 @@ class CylinderDistance : public SignedDistance {
     const double axial_excess = std::abs(point.z()) - half_length_;
     const double radial_outside = std::max(radial_excess, 0.0);
     const double axial_outside = std::max(axial_excess, 0.0);
-    const double norm = std::hypot(radial_outside, axial_outside);
+    const double norm = std::sqrt(radial_outside * radial_outside + axial_outside * axial_outside);
     if (norm > 0.0) return {norm, radial * (radial_outside / norm) + axial * (axial_outside / norm)};
     if (radial_excess > axial_excess) return {radial_excess, radial};
     return {axial_excess, axial};
+  }
+
+  double distance(const Vector3d& point) const override {
+    const double radial = point.head<2>().norm() - radius_, axial = std::abs(point.z()) - half_length_;
+    const double radial_outside = std::max(radial, 0.0), axial_outside = std::max(axial, 0.0);
+    return std::sqrt(radial_outside * radial_outside + axial_outside * axial_outside) +
+           std::min(std::max(radial, axial), 0.0);
   }
 
   AlignedBox3d bounds() const override {
