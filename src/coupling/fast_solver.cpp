@@ -112,6 +112,7 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
   bool from_open = count == 0;
   double expected = m.first_change;  // change of the contacts that this round will ask for, relative
   KrylovReport last;
+  KrylovPast past = count > 0 ? KrylovPast::kDirection : KrylovPast::kNothing;
   for (int round = 0; round < options.maximum_rounds && !lawful; ++round) {
     // On the exact response the impulses are right but for the shift and are given; what redundant contacts do one by
     // one is too sensitive to be solved for over and over.
@@ -119,6 +120,7 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
     if (round == kRoundsOnEstimate) {
       Eigen::MatrixXd K;
       if (!m.solveResponse(contacts, options, report, K)) break;
+      past = KrylovPast::kNothing;
       guess.setResponse(K);
     }
     const ContactStates states = given ? openStates(contacts) : guess.states();
@@ -129,12 +131,14 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
     const double closer = given ? std::pow(kTightening, round - kRoundsOnEstimate + 1) : 1.0;
     const bool rough = count > 0 && !given && expected > ContactGuess::settledAt(options.tolerance);
     last = system.solve(m.rhs, m.x, std::max(closer * options.tolerance, kRoundOff) * rhs_norm,
-                        rough ? kRoughPart : 0.0, options, report, count > 0 && round == 0);
+                        rough ? kRoughPart : 0.0, options, report, past);
+    past = KrylovPast::kResidual;
     if (!last.converged) {
       // The first guess of what the contacts do may be far off, and then hard to solve for: begin with none that press.
       if (from_open || border.count() == 0) break;
       from_open = true;
       system.packMotion(x_fields, m.x);
+      past = KrylovPast::kNothing;
       guess.setOpen();
       continue;
     }

@@ -150,7 +150,6 @@ void PackedSystem::setBorder(const ContactBorder& physical, const Eigen::VectorX
 template <class Real>
 void PackedSystem::apply(const FaceBlocks<Real>& faces, const CellBlocks<Real>& cells, const BodyColumns<Real>& columns,
                          std::vector<Real>& x, std::vector<Real>& y) const {
-  using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
   const Lattice& l = lattice();
   const std::size_t size = l.size, liquid = liquidSize();
   Real* from = x.data();
@@ -160,8 +159,7 @@ void PackedSystem::apply(const FaceBlocks<Real>& faces, const CellBlocks<Real>& 
   applyMomentum(l, faces, problem_->coefficients.viscous, U, static_cast<const Real*>(from + 3 * size),
                 Faces<Real>{to, to + size, to + 2 * size});
   applyDivergence(l, cells, U, Real(0), static_cast<const Real*>(nullptr), to + 3 * size);
-  const Eigen::Index n = bodySize(), k = border_compliance_.size();
-  if (n > 0) columns.addMotion(from + liquid, to);
+  if (bodySize() > 0) columns.addMotion(from + liquid, to);
   if (flux_weight_ != 1.0) {
     const Real weight = static_cast<Real>(flux_weight_);
     Real* flux = to + 3 * size;
@@ -169,7 +167,18 @@ void PackedSystem::apply(const FaceBlocks<Real>& faces, const CellBlocks<Real>& 
 #pragma omp parallel for simd schedule(static)
     for (std::size_t i = 0; i < size; ++i) flux[i] *= weight;
   }
+  applyBodies(columns, x, y);
+}
+
+template <class Real>
+void PackedSystem::applyBodies(const BodyColumns<Real>& columns, const std::vector<Real>& x,
+                               std::vector<Real>& y) const {
+  using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
+  const Eigen::Index n = bodySize(), k = border_compliance_.size();
   if (n == 0) return;
+  const std::size_t liquid = liquidSize();
+  const Real* from = x.data();
+  Real* to = y.data();
   const Eigen::VectorXd v = Eigen::Map<const Vector>(from + liquid, n).template cast<double>();
   Eigen::VectorXd force = bodies_ * v + columns.forces(from);
   if (k > 0) {
@@ -207,6 +216,8 @@ KrylovMaps PackedSystem::maps() {
   return {[this](auto& from, auto& to) { apply(faces_, cells_, columns_, from, to); },
           [this](auto& from, auto& to) { apply(faces_single_, cells_single_, columns_single_, from, to); },
           [this](auto& from, auto& to) { precondition(from, to); },
+          liquidSize(),
+          [this](const auto& from, auto& to) { applyBodies(columns_, from, to); },
           [this](const auto& from, auto& to) { preconditionBodies(from, to); }};
 }
 
@@ -217,14 +228,14 @@ Eigen::VectorXd PackedSystem::improvedTwists(const std::vector<double>& rhs, std
 }
 
 KrylovReport PackedSystem::solve(const std::vector<double>& rhs, std::vector<double>& x, double goal, double part,
-                                 const CoupledOptions& options, CoupledReport& report, bool improved) {
+                                 const CoupledOptions& options, CoupledReport& report, KrylovPast past) {
   KrylovOptions k;
   k.absolute_tolerance = goal;
   k.relative_tolerance = part;
   k.maximum_iterations = options.maximum_iterations;
   // Where viscosities differ by orders of magnitude every direction counts.
   if (!problem_->cell_viscosity.empty()) k.shortest_cycle = k.longest_cycle;
-  const KrylovReport done = krylov_.solve(maps(), rhs, x, k, improved);
+  const KrylovReport done = krylov_.solve(maps(), rhs, x, k, past);
   report.iterations += done.iterations;
   ++report.solves;
   if (iterations_ == 0 && done.iterations > 0 && done.residual > 0.0) {

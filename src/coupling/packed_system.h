@@ -47,10 +47,10 @@ class PackedSystem {
 
   // Twists of x after one cycle of the preconditioner on its residual.
   Eigen::VectorXd improvedTwists(const std::vector<double>& rhs, std::vector<double>& x);
-  // Until the residual is `goal`, or `part` of what it was at first. improved: nothing but the border has changed since
-  // improvedTwists().
+  // Until the residual is `goal`, or `part` of what it was at first. past: of the call before, improvedTwists() or
+  // solve(); nothing but the border and forces on bodies may have changed since.
   KrylovReport solve(const std::vector<double>& rhs, std::vector<double>& x, double goal, double part,
-                     const CoupledOptions& options, CoupledReport& report, bool improved = false);
+                     const CoupledOptions& options, CoupledReport& report, KrylovPast past = KrylovPast::kNothing);
 
   // S is renewed before it is next used if solves have lost more iterations by its age than renewing it takes...
   void judgeAge();
@@ -63,6 +63,9 @@ class PackedSystem {
   template <class Real>
   void apply(const FaceBlocks<Real>& faces, const CellBlocks<Real>& cells, const BodyColumns<Real>& columns,
              std::vector<Real>& x, std::vector<Real>& y) const;
+  // Its rows of the bodies and the border.
+  template <class Real>
+  void applyBodies(const BodyColumns<Real>& columns, const std::vector<Real>& x, std::vector<Real>& y) const;
   void precondition(const std::vector<float>& from, std::vector<float>& to);
   // Its second half, for which `to` holds the liquid's.
   void preconditionBodies(const std::vector<float>& from, std::vector<float>& to) const;

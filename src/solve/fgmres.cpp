@@ -184,6 +184,13 @@ double Fgmres::residual(const KrylovMaps& maps, const std::vector<double>& b, st
   }));
 }
 
+double Fgmres::completedResidual(const KrylovMaps& maps, const std::vector<double>& b, const std::vector<double>& x) {
+  maps.apply_rest(x, work_);
+  for (std::size_t i = maps.rest; i < b.size(); ++i) work_[i] = b[i] - work_[i];
+  countWork(b.size(), 2.0, sizeof(double));
+  return std::sqrt(dot(work_, work_));
+}
+
 void Fgmres::extend(const KrylovMaps& maps, bool known, std::vector<float>& v, std::vector<float>& z,
                     std::vector<float>& w) {
   if (known) {
@@ -252,10 +259,11 @@ int Fgmres::cycle(const KrylovMaps& maps, double norm, double goal, int most, bo
 }
 
 KrylovReport Fgmres::solve(const KrylovMaps& maps, const std::vector<double>& b, std::vector<double>& x,
-                           const KrylovOptions& options, bool first_known) {
+                           const KrylovOptions& options, KrylovPast past) {
   KrylovReport report;
   work_.resize(b.size(), 0.0);
-  report.residual = residual(maps, b, x);
+  bool first_known = past == KrylovPast::kDirection;
+  report.residual = past == KrylovPast::kNothing ? residual(maps, b, x) : completedResidual(maps, b, x);
   const double none = std::sqrt(dot(b, b));
   if (report.residual > none) {
     // A guess that is worse than none: what it left wrong, where viscosities have changed by orders of magnitude, would

@@ -35,16 +35,25 @@ struct KrylovMaps {
   std::function<void(std::vector<double>& x, std::vector<double>& y)> apply;
   std::function<void(std::vector<float>& x, std::vector<float>& y)> apply_single;
   std::function<void(std::vector<float>& x, std::vector<float>& y)> precondition;
-  // The rest of P^-1 x where y holds what firstDirection() found and solve() is told to go on from; may be missing.
-  std::function<void(const std::vector<float>& x, std::vector<float>& y)> complete;
+  // Where solve() is told to go on from the call before. Entries from `rest` on are those in which the right side, and
+  // of which the guess, may have changed since; the others of A x do not depend on them. May be missing.
+  std::size_t rest = 0;
+  std::function<void(const std::vector<double>& x, std::vector<double>& y)> apply_rest;  // these entries of A x
+  std::function<void(const std::vector<float>& x, std::vector<float>& y)> complete;      // these entries of P^-1 x
+};
+
+// What the last call, with the same maps, has left for solve().
+enum class KrylovPast {
+  kNothing,
+  kResidual,   // the residual, but for its rest
+  kDirection,  // from firstDirection(): it and the first direction, but for their rest
 };
 
 class Fgmres {
  public:
-  // x holds the initial guess on entry, the solution on return. Work space is kept between calls. first_known: the last
-  // call was firstDirection(), and what the maps do not complete() has not changed since.
+  // x holds the initial guess on entry, the solution on return. Work space is kept between calls.
   [[nodiscard]] KrylovReport solve(const KrylovMaps& maps, const std::vector<double>& b, std::vector<double>& x,
-                                   const KrylovOptions& options, bool first_known = false);
+                                   const KrylovOptions& options, KrylovPast past = KrylovPast::kNothing);
 
   // P^-1 (b - A x): where a first step would go. Valid until the next call.
   [[nodiscard]] const std::vector<float>& firstDirection(const KrylovMaps& maps, const std::vector<double>& b,
@@ -73,6 +82,8 @@ class Fgmres {
   };
 
   double residual(const KrylovMaps& maps, const std::vector<double>& b, std::vector<double>& x);
+  // The same where work_ holds all of it but the rest.
+  double completedResidual(const KrylovMaps& maps, const std::vector<double>& b, const std::vector<double>& x);
   // One cycle on the residual in work_, until it is `goal` times as large; adds to x. first_known: only a rest of the
   // first direction is missing. Returns the number of directions.
   template <class Real>
@@ -85,7 +96,7 @@ class Fgmres {
 
   Space<float> single_;
   Space<double> double_;  // empty unless it was needed
-  std::vector<double> work_;
+  std::vector<double> work_;  // the residual of the last call
   std::vector<float> v_single_, z_single_;
 };
 

@@ -81,11 +81,27 @@ TEST_F(FgmresTest, GoesOnFromAKnownFirstDirection) {
   options.absolute_tolerance = 1e-8;
   options.maximum_iterations = 500;
   options.shortest_cycle = options.longest_cycle = 130;
-  std::vector<double> x(rhs.size(), 0.003), same = x;
+  // The last ten entries of the right side and of the guess are others than those that the first direction was found
+  // for. They may not tell in the others: none of the first ones is coupled to them.
+  const Eigen::Index n = matrix.rows();
+  matrix.topRightCorner(n - 10, 10).setZero();
+  matrix.bottomLeftCorner(10, n - 10).setZero();
+  std::vector<double> x(rhs.size());
+  Eigen::Map<Eigen::VectorXd>(x.data(), n) = 0.5 * matrix.inverse() * Eigen::Map<const Eigen::VectorXd>(rhs.data(), n);
+  std::vector<double> same = x;
   const KrylovReport report = Fgmres().solve(maps(), rhs, x, options);
-  // Of the first direction all but the last ten entries are told; how often the whole of it is asked for counts.
   KrylovMaps partly = maps();
-  int asked = 0;
+  partly.rest = n - 10;
+  partly.apply_rest = [this, n](const std::vector<double>& from, std::vector<double>& to) {
+    Eigen::Map<Eigen::VectorXd>(to.data(), n).tail(10) =
+        matrix.bottomRows(10) * Eigen::Map<const Eigen::VectorXd>(from.data(), n);
+  };
+  // How often the whole of a direction is asked for, and of a residual.
+  int asked = 0, applied = 0;
+  partly.apply = [&applied, whole = partly.apply](auto& from, auto& to) {
+    ++applied;
+    whole(from, to);
+  };
   partly.precondition = [&asked, whole = partly.precondition](auto& from, auto& to) {
     ++asked;
     whole(from, to);
@@ -97,11 +113,21 @@ TEST_F(FgmresTest, GoesOnFromAKnownFirstDirection) {
   std::vector<double> other = rhs;  // changes at the end only
   for (std::size_t i = other.size() - 10; i < other.size(); ++i) other[i] += 5.0;
   (void)krylov.firstDirection(partly, other, same);
-  const KrylovReport going_on = krylov.solve(partly, rhs, same, options, true);
+  for (std::size_t i = same.size() - 10; i < same.size(); ++i) same[i] += 0.01;
+  const KrylovReport going_on = krylov.solve(partly, rhs, same, options, KrylovPast::kDirection);
   EXPECT_TRUE(going_on.converged);
   EXPECT_NEAR(going_on.iterations, report.iterations, 2);
   EXPECT_EQ(asked, going_on.iterations);
   EXPECT_LE(residual(same), 1e-8);
+  EXPECT_NEAR(residual(same), going_on.residual, 1e-12);
+
+  // From the residual that this has left.
+  for (std::size_t i = rhs.size() - 10; i < rhs.size(); ++i) rhs[i] -= 2.0;
+  applied = 0;
+  KrylovOptions none = options;
+  none.maximum_iterations = 0;
+  EXPECT_NEAR(krylov.solve(partly, rhs, same, none, KrylovPast::kResidual).residual, residual(same), 1e-12);
+  EXPECT_EQ(applied, 0);
 }
 
 TEST_F(FgmresTest, StaysOrthogonalInSinglePrecision) {
