@@ -8,7 +8,7 @@
 namespace monolith {
 namespace {
 
-constexpr double kFar = 1e3;          // cell widths: no solid in sight
+constexpr float kFar = 1e3f;          // cell widths: no solid in sight
 constexpr double kLeastFluid = 1e-3;  // a face with less of it is closed: no tiny pivots
 // A face's centre nearer to a surface than this, in cell widths, lies on it: what is left of its share of liquid would
 // be the only way into the cell behind it, a pivot as small as round-off.
@@ -56,7 +56,7 @@ void forEachWallDistance(const Lattice& l, const Eigen::Vector3d& offset, Functi
       const auto row = l.index(0, j, k);
       for (int i = -Lattice::kLowHalo; i < l.n[0] + Lattice::kHighHalo; ++i) {
         const double along = i + offset[0];
-        f(row + i, l.periodic[0] ? beside : std::min({beside, along, l.n[0] - along}));
+        f(row + i, static_cast<float>(l.periodic[0] ? beside : std::min({beside, along, l.n[0] - along})));
       }
     }
   }
@@ -103,17 +103,17 @@ void SolidSampler::sample(const std::vector<RigidBody>& bodies, SolidFractions& 
     out.owner[a].resize(l.size, SolidFractions::kWall);
     Eigen::Vector3d offset = Eigen::Vector3d::Constant(0.5);
     offset[a] = 0.0;
-    forEachWallDistance(l, offset, [&](std::ptrdiff_t f, double d) {
-      out.distance[a][f] = d;
-      out.fluid[a][f] = d > 0.0 ? 1.0 : 0.0;
+    forEachWallDistance(l, offset, [&](std::ptrdiff_t f, float d) {
+      out.distance[a][f] = std::min(d, SolidFractions::kFarthest);
+      out.fluid[a][f] = d > 0.0f ? 1.0 : 0.0;
       out.owner[a][f] = SolidFractions::kWall;
     });
   }
   out.cell_distance.resize(l.size, -kFar);
   out.cell_fluid.resize(l.size, 0.0);
-  forEachWallDistance(l, Eigen::Vector3d::Constant(0.5), [&](std::ptrdiff_t c, double d) {
+  forEachWallDistance(l, Eigen::Vector3d::Constant(0.5), [&](std::ptrdiff_t c, float d) {
     out.cell_distance[c] = d;
-    out.cell_fluid[c] = d > 0.0 ? 1.0 : 0.0;
+    out.cell_fluid[c] = d > 0.0f ? 1.0 : 0.0;
   });
   out.bodies.resize(bodies.size());
   samples_.resize(bodies.size());
@@ -160,7 +160,7 @@ void SolidSampler::sampleBody(const RigidBody& body, BodySample& out) const {
   const std::size_t size = static_cast<std::size_t>(f.count[0]) * f.count[1] * f.count[2];
   for (auto& field : f.face) field.assign(size, 0.0);
   f.cell.assign(size, 0.0);
-  for (auto& field : out.distance) field.assign(size, static_cast<float>(kFar));
+  for (auto& field : out.distance) field.assign(size, kFar);
   out.cell_distance.resize(size);
   if (size == 0) return;
 
@@ -242,13 +242,13 @@ void SolidSampler::addBody(const BodySample& sample, int index, SolidFractions& 
         for (int a = 0; a < 3; ++a) {
           const auto g = gridIndex(l, cell, a);
           if (g >= 0 && sample.distance[a][c] < out.distance[a][g]) {
-            out.distance[a][g] = sample.distance[a][c];
+            out.distance[a][g] = std::max(sample.distance[a][c], -SolidFractions::kFarthest);
             out.owner[a][g] = static_cast<std::int16_t>(index);
           }
         }
         const auto g = gridIndex(l, cell, -1);
         if (g >= 0) {
-          out.cell_distance[g] = std::min<double>(out.cell_distance[g], sample.cell_distance[c]);
+          out.cell_distance[g] = std::min(out.cell_distance[g], sample.cell_distance[c]);
           out.cell_fluid[g] = std::max(0.0, out.cell_fluid[g] - f.cell[c]);
         }
       }

@@ -49,11 +49,14 @@ struct BodyFractions {
 
 struct SolidFractions {
   static constexpr std::int16_t kWall = -1;
+  // Cell widths. Away from a body its distance is not known, only that it is large; no more is told, or averages next
+  // to the body, of which coarser levels are made, would go wrong.
+  static constexpr float kFarthest = 2.5f;
 
   FaceField<double> fluid;                          // W_F on faces
-  FaceField<double> distance;                       // in cell widths, at face centres; <= 0 in solid
+  FaceField<float> distance;                        // in cell widths, at face centres; <= 0 in solid, at most kFarthest
   std::array<std::vector<std::int16_t>, 3> owner;   // whose distance that is: a body or kWall
-  std::vector<double> cell_distance;                // in cell widths, of bodies and walls at cell centres
+  std::vector<float> cell_distance;                 // in cell widths, of bodies and walls at cell centres
   std::vector<double> cell_fluid;                   // part of the cell that is not solid
   std::vector<BodyFractions> bodies;
 };

@@ -90,9 +90,9 @@ void StepProblem::assembleFitted(SolidFractions& solids, const std::vector<doubl
   } else {
     steady.update(grid.lattice, found.kinds, {viscous_number, sticks ? 1.0 : 0.0});
   }
-  buildCoefficients(grid.lattice, geometry, viscous_number, coefficients, rates ? &strain : nullptr,
+  buildCoefficients(grid.lattice, geometry, viscous_number, coefficients, kinds_, rates ? &strain : nullptr,
                     rates ? nullptr : &steady);
-  buildBodyRows(grid, solids, *bodies, geometry, coefficients, rows);
+  buildBodyRows(grid, solids, *bodies, geometry, coefficients, kinds_, rows);
   if (rates || !found.full || !coarse.serve(*bodies, viscous_number, grid.h)) {
     buildCoarseLevels(grid.lattice, geometry, viscous_number, leastCoarsened(rates), coarse.levels);
     coarse.built(*bodies, viscous_number, !rates && found.full);

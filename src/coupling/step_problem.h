@@ -111,6 +111,7 @@ class StepProblem {
   Vector6d enclosedImpulse(const EnclosedWeight& weight, const Eigen::Vector3d& gravity) const;
   std::string balanceSealedRegions(std::vector<double>& flux) const;
 
+  FaceKinds kinds_;                                    // `fitted`, with viscosity
   std::array<std::vector<std::uint8_t>, 3> resolved_;  // empty: every face with an unknown
   FaceField<double> liquid_mass_;                      // empty: the coefficients'
   mutable StepOperator op_;

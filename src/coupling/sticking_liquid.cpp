@@ -79,10 +79,11 @@ std::vector<Matrix6d> attachStickingLiquid(const MacGrid& grid, const std::vecto
       for (int i = 0; i < l.faceEnd(0); ++i) {
         if (between && i == kBesideWall) i = std::max(i, l.faceEnd(0) - kBesideWall);
         const auto f = l.index(i, j, k);
-        if (!(fluid[f] > 0.0) || distance[f] >= 1.0) continue;
+        const double here = distance[f];
+        if (!(fluid[f] > 0.0) || here >= 1.0) continue;
         double kept = 0.0;
         int body = owner[f];
-        if (distance[f] > 0.0) {
+        if (here > 0.0) {
           kept = 1.0;
           double nearest = 1.0;
           for (int b = 0; b < 3; ++b) {
@@ -93,7 +94,7 @@ std::vector<Matrix6d> attachStickingLiquid(const MacGrid& grid, const std::vecto
               if (beyond <= 0.0) {
                 // The distance here may be that of a body: walls lie on faces, whatever else is near.
                 const bool wall = owner[f + step] < 0;
-                theta = !wall ? distance[f] / (distance[f] - beyond) : a == b ? 1.0 : 0.5;
+                theta = !wall ? here / (here - beyond) : a == b ? 1.0 : 0.5;
                 share += wall ? kExtraAtWall : kExtraAtBody;
                 if (theta < nearest) {
                   nearest = theta;

@@ -25,17 +25,16 @@ inline double partOfSegment(double distance_low, double distance_high) {
 }
 
 constexpr double kLeastSliver = 0.05;
-constexpr double kDistanceCap = 2.5;   // cell widths; the fine distances are right at least up to here
 
 // Beyond the walls: solid, half a cell from them. Along periodic axes the images.
-void closeHalo(const Lattice& l, int face_axis, std::vector<double>& distance) {
+void closeHalo(const Lattice& l, int face_axis, std::vector<float>& distance) {
   int end[3];
   for (int a = 0; a < 3; ++a) end[a] = a == face_axis ? l.faceEnd(a) : l.n[a];
   for (int k = -Lattice::kLowHalo; k < l.n[2] + Lattice::kHighHalo; ++k) {
     for (int j = -Lattice::kLowHalo; j < l.n[1] + Lattice::kHighHalo; ++j) {
       for (int i = -Lattice::kLowHalo; i < l.n[0] + Lattice::kHighHalo; ++i) {
         const bool inside = i >= 0 && i < end[0] && j >= 0 && j < end[1] && k >= 0 && k < end[2];
-        if (!inside) distance[l.index(i, j, k)] = -0.5;
+        if (!inside) distance[l.index(i, j, k)] = -0.5f;
       }
     }
   }
@@ -113,15 +112,6 @@ void buildPlainRow(const SampleBuilder& samples, double viscous_number, std::ptr
   }
 }
 
-std::vector<double> capped(const std::vector<double>& distance) {
-  std::vector<double> out(distance.size());
-  const double* from = distance.data();
-  double* to = out.data();
-#pragma omp parallel for simd schedule(static)
-  for (std::size_t f = 0; f < distance.size(); ++f) to[f] = std::min(std::max(from[f], -kDistanceCap), kDistanceCap);
-  return out;
-}
-
 }  // namespace
 
 double liquidPart(double distance_low, double distance_high) { return partOfSegment(distance_low, distance_high); }
@@ -139,7 +129,8 @@ void StrainScales::fillHalos(const Lattice& l) {
 }
 
 void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double viscous_number,
-                       StaggeredCoefficients<double>& out, StrainScales* strain, const SteadyRows* steady) {
+                       StaggeredCoefficients<double>& out, FaceKinds& kinds, StrainScales* strain,
+                       const SteadyRows* steady) {
   prepareToFill(l, viscous_number > 0.0, out);
   const auto keeps = [&](int j, int k) { return steady != nullptr && steady->steady(j, k); };
   const auto& liquid = *geometry.liquid_distance;
@@ -172,7 +163,8 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
   if (!out.viscous) return;
 
   if (strain != nullptr) strain->resize(l);
-  const SampleBuilder samples(l, geometry, out, steady);
+  findFaceKinds(l, geometry, out, steady, kinds);
+  const SampleBuilder samples(l, geometry, kinds);
   forEachHeavyRow(l, [&](std::ptrdiff_t row, int j, int k) {
     if (keeps(j, k)) return;
     for (auto& field : out.drag) std::fill_n(field.data() + row, width, 0.0);
@@ -195,9 +187,12 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
 void buildCoarseLevels(const Lattice& lattice, const StokesGeometry& geometry, double viscous_number,
                        double least_number, std::vector<StaggeredCoefficients<float>>& levels) {
   Lattice l = lattice;
-  FaceField<double> fluid, distance;
+  FaceField<double> fluid;
+  FaceField<float> distance;
   std::vector<double> liquid, to;
+  std::vector<float> single;
   StaggeredCoefficients<double> coefficients;
+  FaceKinds kinds;
   std::size_t count = 1;
   while (canCoarsen(l) && viscous_number > least_number) {
     const Lattice coarse = coarsened(l);
@@ -206,11 +201,10 @@ void buildCoarseLevels(const Lattice& lattice, const StokesGeometry& geometry, d
       restrictFaces(l, a, first ? (*geometry.fluid)[a] : fluid[a], coarse, to);
       fillHalo(coarse, to);
       fluid[a].swap(to);
-      // Away from a body its distance is not known, only that it is large: cap it, or averages next to the body go wrong.
-      restrictFaces(l, a, first ? capped((*geometry.solid_distance)[a]) : distance[a], coarse, to);
-      for (double& d : to) d *= 0.5;
-      closeHalo(coarse, a, to);
-      distance[a].swap(to);
+      restrictFaces(l, a, first ? (*geometry.solid_distance)[a] : distance[a], coarse, single);
+      for (float& d : single) d *= 0.5f;
+      closeHalo(coarse, a, single);
+      distance[a].swap(single);
     }
     restrictCells(l, first ? *geometry.liquid_distance : liquid, coarse, to);
     for (double& d : to) d *= 0.5;
@@ -219,7 +213,7 @@ void buildCoarseLevels(const Lattice& lattice, const StokesGeometry& geometry, d
     viscous_number *= 0.25;
     l = coarse;
     StokesGeometry g{&fluid, &distance, &liquid};
-    buildCoefficients(l, g, viscous_number, coefficients);
+    buildCoefficients(l, g, viscous_number, coefficients, kinds);
     if (levels.size() <= count) levels.resize(count + 1);
     levels[count++] = convertCoefficients<float>(coefficients);
   }

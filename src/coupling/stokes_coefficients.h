@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "coupling/body_rows.h"
+#include "coupling/fitted_segment.h"
 #include "coupling/solid_fractions.h"
 #include "fluid/mac_grid.h"
 #include "rigid/rigid_body.h"
@@ -29,15 +30,17 @@
 
 namespace monolith {
 
+using FaceKinds = std::array<std::vector<FaceKind>, 3>;
+
 // W_L of the segment between two cell centres from the liquid's distance there.
 double liquidPart(double distance_low, double distance_high);
 
 struct StokesGeometry {
   const FaceField<double>* fluid = nullptr;           // W_F
-  const FaceField<double>* solid_distance = nullptr;  // cell widths
+  const FaceField<float>* solid_distance = nullptr;   // cell widths
   const std::vector<double>* liquid_distance = nullptr;  // cell widths, negative in liquid, at cell centres, halo filled
   // Solids' distance at cell centres, halo filled: with it segments find curved surfaces where they are; may be missing.
-  const std::vector<double>* solid_cell_distance = nullptr;
+  const std::vector<float>* solid_cell_distance = nullptr;
 };
 
 // From what the operator computes at a sample to its rate, in 1/s times the cell width, where the viscosity is the one that the
@@ -52,14 +55,15 @@ struct StrainScales {
 };
 
 // Coefficients of one level; `viscous_number` is that of the level. `strain`, if wanted, is filled only with viscosity.
-// Of steady rows what is there is kept; not with `strain`.
+// Of steady rows what is there is kept; not with `strain`. kinds: of the faces, found with viscosity only.
 void buildCoefficients(const Lattice& lattice, const StokesGeometry& geometry, double viscous_number,
-                       StaggeredCoefficients<double>& out, StrainScales* strain = nullptr,
+                       StaggeredCoefficients<double>& out, FaceKinds& kinds, StrainScales* strain = nullptr,
                        const SteadyRows* steady = nullptr);
 
 // Rows of the bodies on the finest level, for coefficients built from the same geometry.
 void buildBodyRows(const MacGrid& grid, const SolidFractions& solids, const std::vector<RigidBody>& bodies,
-                   const StokesGeometry& geometry, const StaggeredCoefficients<double>& coefficients, BodyRows& out);
+                   const StokesGeometry& geometry, const StaggeredCoefficients<double>& coefficients,
+                   const FaceKinds& kinds, BodyRows& out);
 
 // The coarser levels, in the multigrid's precision: the same construction on averaged geometry; none below a level whose
 // viscous number is least_number or less.

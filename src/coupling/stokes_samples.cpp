@@ -4,11 +4,12 @@
 
 namespace monolith {
 
-FaceKinds findFaceKinds(const Lattice& l, const StokesGeometry& g, const StaggeredCoefficients<double>& c,
-                        const SteadyRows* steady) {
+void findFaceKinds(const Lattice& l, const StokesGeometry& g, const StaggeredCoefficients<double>& c,
+                   const SteadyRows* steady, FaceKinds& kinds) {
   const int low = Lattice::kLowHalo, rows = l.faceEnd(1), planes = l.faceEnd(2);
+  const bool keeps = steady != nullptr && kinds[0].size() == l.size;
   const auto isWanted = [&](int j, int k) {
-    if (steady == nullptr) return true;
+    if (!keeps) return true;
     for (int dk = -1; dk <= 1; ++dk) {
       for (int dj = -1; dj <= 1; ++dj) {
         // Also beyond the ends, where the halo is.
@@ -17,7 +18,6 @@ FaceKinds findFaceKinds(const Lattice& l, const StokesGeometry& g, const Stagger
     }
     return false;
   };
-  FaceKinds kinds;
   for (auto& field : kinds) field.resize(l.size);
   const auto stride = l.stride[1];
   const auto per_plane = static_cast<int>(l.stride[2] / stride), all = static_cast<int>(l.size / stride);
@@ -27,19 +27,18 @@ FaceKinds findFaceKinds(const Lattice& l, const StokesGeometry& g, const Stagger
     const auto begin = row * stride;
     for (int a = 0; a < 3; ++a) {
       const double* mass = c.mass[a].data() + begin;
-      const double* distance = (*g.solid_distance)[a].data() + begin;
+      const float* distance = (*g.solid_distance)[a].data() + begin;
       const double* fluid = (*g.fluid)[a].data() + begin;
       FaceKind* kind = kinds[a].data() + begin;
 #pragma omp simd
       for (std::ptrdiff_t f = 0; f < stride; ++f) {
-        const bool solid = distance[f] <= 0.0;
+        const bool solid = distance[f] <= 0.0f;
         const FaceKind still = solid | (fluid[f] <= 0.0) ? FaceKind::kSolid : FaceKind::kAir;
         const FaceKind moving = solid ? FaceKind::kSliver : FaceKind::kFluid;
         kind[f] = mass[f] > 0.0 ? moving : still;
       }
     }
   }
-  return kinds;
 }
 
 void SampleBuilder::markCells(std::ptrdiff_t row, int width, std::vector<std::uint8_t>& mark) const {

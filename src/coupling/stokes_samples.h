@@ -12,20 +12,17 @@
 
 namespace monolith {
 
-using FaceKinds = std::array<std::vector<FaceKind>, 3>;
-
-// `steady`: rows that are not looked at; theirs are found only next to others. May be null.
-FaceKinds findFaceKinds(const Lattice& lattice, const StokesGeometry& geometry,
-                        const StaggeredCoefficients<double>& coefficients, const SteadyRows* steady);
+// Of rows that are steady, and between such, what is there is kept. May be null.
+void findFaceKinds(const Lattice& lattice, const StokesGeometry& geometry,
+                   const StaggeredCoefficients<double>& coefficients, const SteadyRows* steady, FaceKinds& kinds);
 
 // Liquid part of a cube of width one from the distance at its centre.
 inline double liquidOfCube(double distance) { return std::clamp(0.5 - distance, 0.0, 1.0); }
 
 class SampleBuilder {
  public:
-  SampleBuilder(const Lattice& l, const StokesGeometry& g, const StaggeredCoefficients<double>& c,
-                const SteadyRows* steady = nullptr)
-      : lattice(l), geometry(g), kinds_(findFaceKinds(l, g, c, steady)) {}
+  SampleBuilder(const Lattice& l, const StokesGeometry& g, const FaceKinds& kinds)
+      : lattice(l), geometry(g), kinds_(kinds) {}
 
   FaceKind kind(int axis, std::ptrdiff_t f) const { return kinds_[axis][f]; }
   // Of component `axis`, from face a to the next along `along`.
@@ -58,16 +55,17 @@ class SampleBuilder {
     const auto& cell = *geometry.solid_cell_distance;
     const auto& distance = *geometry.solid_distance;
     const auto b = a + lattice.stride[along];
-    const double mean = 0.5 * (distance[axis][a] + distance[axis][b]);
+    const auto sum = [](double x, double y) { return x + y; };  // in double precision
+    const double mean = 0.5 * sum(distance[axis][a], distance[axis][b]);
     if (axis == along) return mean - cell[a];
     // Half way is an edge. The faces of the other component there, minus the cells around: what is left of the second
     // derivatives is that of the segment itself.
     const auto low = b - lattice.stride[axis];
-    return 0.25 * (cell[a] + cell[b] + cell[low] + cell[low - lattice.stride[along]]) -
-           0.5 * (distance[along][low] + distance[along][b]);
+    return 0.25 * (sum(cell[a], cell[b]) + sum(cell[low], cell[low - lattice.stride[along]])) -
+           0.5 * sum(distance[along][low], distance[along][b]);
   }
 
-  FaceKinds kinds_;
+  const FaceKinds& kinds_;
 };
 
 }  // namespace monolith

@@ -77,7 +77,8 @@ std::vector<char> nearBodies(const Lattice& l, const SolidFractions& solids) {
 }  // namespace
 
 void buildBodyRows(const MacGrid& grid, const SolidFractions& solids, const std::vector<RigidBody>& bodies,
-                   const StokesGeometry& geometry, const StaggeredCoefficients<double>& coefficients, BodyRows& out) {
+                   const StokesGeometry& geometry, const StaggeredCoefficients<double>& coefficients,
+                   const FaceKinds& kinds, BodyRows& out) {
   const Lattice& l = grid.lattice;
   const double h = grid.h;
   out = BodyRows();
@@ -86,7 +87,7 @@ void buildBodyRows(const MacGrid& grid, const SolidFractions& solids, const std:
   if (!coefficients.viscous) return;
 
   // J_s: every sample with an end in a body.
-  const SampleBuilder samples(l, geometry, coefficients);
+  const SampleBuilder samples(l, geometry, kinds);
   const RowBuilder rows(samples, solids, bodies, grid);
   const int end_j = l.faceEnd(1);
   const int end_k = l.faceEnd(2);
@@ -105,7 +106,7 @@ void buildBodyRows(const MacGrid& grid, const SolidFractions& solids, const std:
       for (int i = 0; i < width; ++i) {
         const auto c = row + i;
         // Nothing of a body within reach of the samples of this cell.
-        if (!near[c] || mark[i] != SampleBuilder::kMixed || solids.cell_distance[c] > 2.5) continue;
+        if (!near[c] || mark[i] != SampleBuilder::kMixed || solids.cell_distance[c] > 2.5f) continue;
         for (int a = 0; a < 3; ++a) {
           if (coefficients.normal[a][c] > 0.0) {
             rows.addSegment(a, c, grid.faceCenter(a, i, j, k), a, 1.0, c, slab.normal[a]);

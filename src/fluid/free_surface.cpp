@@ -242,7 +242,7 @@ void FreeSurface::redistance() {
   extendIntoHalo(l, distance_);
 }
 
-void FreeSurface::extendIntoSolids(const std::vector<double>& solid_distance) {
+void FreeSurface::extendIntoSolids(const std::vector<float>& solid_distance) {
   if (full_ || empty_) return;
   const Lattice& l = grid_.lattice;
   copyField(distance_, scratch_.field);
@@ -255,7 +255,9 @@ void FreeSurface::extendIntoSolids(const std::vector<double>& solid_distance) {
         const double depth = solid_distance[c];
         if (depth > 0.0) continue;
         Eigen::Vector3d out;
-        for (int a = 0; a < 3; ++a) out[a] = solid_distance[c + l.stride[a]] - solid_distance[c - l.stride[a]];
+        for (int a = 0; a < 3; ++a) {
+          out[a] = static_cast<double>(solid_distance[c + l.stride[a]]) - solid_distance[c - l.stride[a]];
+        }
         const double length = out.norm();
         if (!(length > 0.0)) continue;
         const Eigen::Vector3d x = Eigen::Vector3d(i, j, k) + offset + out * ((kSampleBeyondSolid - depth) / length);

@@ -30,7 +30,7 @@ class FreeSurface {
   void advect(const FaceField<double>& velocity, double dt, double maximum_speed);
 
   // Continues the distance into solids. solid_distance in cell widths, cell centres.
-  void extendIntoSolids(const std::vector<double>& solid_distance);
+  void extendIntoSolids(const std::vector<float>& solid_distance);
 
   // Liquid volume, m^3; cell_fluid: part of each cell that is not solid.
   double volume(const std::vector<double>& cell_fluid) const;

@@ -229,7 +229,7 @@ double liquidPotential(const MacGrid& grid, const FreeSurface& surface, const st
 }
 
 std::vector<SurfacePoint> sampleSurface(const MacGrid& grid, const FreeSurface& surface,
-                                        const std::vector<double>& cell_distance, const FaceField<double>& velocity) {
+                                        const std::vector<float>& cell_distance, const FaceField<double>& velocity) {
   std::vector<SurfacePoint> points;
   if (surface.full() || surface.empty()) return points;
   const Lattice& l = grid.lattice;

@@ -56,6 +56,6 @@ double liquidPotential(const MacGrid& grid, const FreeSurface& surface, const st
                        double density, const Eigen::Vector3d& gravity);
 
 std::vector<SurfacePoint> sampleSurface(const MacGrid& grid, const FreeSurface& surface,
-                                        const std::vector<double>& cell_distance, const FaceField<double>& velocity);
+                                        const std::vector<float>& cell_distance, const FaceField<double>& velocity);
 
 }  // namespace monolith

@@ -57,8 +57,9 @@ struct CouplingScene {
     extendIntoHalo(l, liquid);
     if (number >= 0.05) attachStickingLiquid(grid, bodies, liquid, solids);
     const StokesGeometry geometry{&solids.fluid, &solids.distance, &liquid, &solids.cell_distance};
-    buildCoefficients(l, geometry, number, coefficients);
-    buildBodyRows(grid, solids, bodies, geometry, coefficients, rows);
+    FaceKinds kinds;
+    buildCoefficients(l, geometry, number, coefficients, kinds);
+    buildBodyRows(grid, solids, bodies, geometry, coefficients, kinds, rows);
   }
 };
 

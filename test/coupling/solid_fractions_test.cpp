@@ -106,7 +106,7 @@ TEST(SolidFractions, BodiesAreSampledAgainOnceTheyHaveMoved) {
     for (int a = 0; a < 3; ++a) {
       for (std::size_t f = 0; f < grid.lattice.size; ++f) {
         worst = std::max({worst, std::abs(again.fluid[a][f] - fresh.fluid[a][f]),
-                          std::abs(again.distance[a][f] - fresh.distance[a][f])});
+                          static_cast<double>(std::abs(again.distance[a][f] - fresh.distance[a][f]))});
       }
     }
     return worst;
