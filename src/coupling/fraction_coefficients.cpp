@@ -219,7 +219,7 @@ void buildCoarseFractionLevels(const Lattice& lattice, const FractionGeometry& g
     l = coarse;
     buildFractionCoefficients(l, g, viscous_number, coefficients);
     if (levels.size() <= count) levels.resize(count + 1);
-    levels[count++] = convertCoefficients<float>(coefficients);
+    convertCoefficients(coefficients, levels[count++]);
   }
   levels.resize(count);
 }

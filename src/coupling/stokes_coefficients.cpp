@@ -30,12 +30,14 @@ constexpr double kLeastSliver = 0.05;
 void closeHalo(const Lattice& l, int face_axis, std::vector<float>& distance) {
   int end[3];
   for (int a = 0; a < 3; ++a) end[a] = a == face_axis ? l.faceEnd(a) : l.n[a];
+#pragma omp parallel for schedule(static) if (l.size >= kSizeWorthSharing)
   for (int k = -Lattice::kLowHalo; k < l.n[2] + Lattice::kHighHalo; ++k) {
     for (int j = -Lattice::kLowHalo; j < l.n[1] + Lattice::kHighHalo; ++j) {
-      for (int i = -Lattice::kLowHalo; i < l.n[0] + Lattice::kHighHalo; ++i) {
-        const bool inside = i >= 0 && i < end[0] && j >= 0 && j < end[1] && k >= 0 && k < end[2];
-        if (!inside) distance[l.index(i, j, k)] = -0.5f;
-      }
+      const bool beside = j < 0 || j >= end[1] || k < 0 || k >= end[2];
+      float* row = distance.data() + l.index(0, j, k);
+      if (beside) std::fill_n(row, end[0], -0.5f);
+      for (int i = -Lattice::kLowHalo; i < 0; ++i) row[i] = -0.5f;
+      for (int i = end[0]; i < l.n[0] + Lattice::kHighHalo; ++i) row[i] = -0.5f;
     }
   }
   fillHalo(l, distance);
@@ -110,6 +112,12 @@ void buildPlainRow(const SampleBuilder& samples, double viscous_number, std::ptr
       second[i] = weight;
     }
   }
+}
+
+template <class Real>
+void scale(Real factor, std::vector<Real>& field) {
+#pragma omp parallel for simd schedule(static) if (field.size() >= kSizeWorthSharing)
+  for (std::size_t i = 0; i < field.size(); ++i) field[i] *= factor;
 }
 
 }  // namespace
@@ -202,12 +210,12 @@ void buildCoarseLevels(const Lattice& lattice, const StokesGeometry& geometry, d
       fillHalo(coarse, to);
       fluid[a].swap(to);
       restrictFaces(l, a, first ? (*geometry.solid_distance)[a] : distance[a], coarse, single);
-      for (float& d : single) d *= 0.5f;
+      scale(0.5f, single);
       closeHalo(coarse, a, single);
       distance[a].swap(single);
     }
     restrictCells(l, first ? *geometry.liquid_distance : liquid, coarse, to);
-    for (double& d : to) d *= 0.5;
+    scale(0.5, to);
     extendIntoHalo(coarse, to);
     liquid.swap(to);
     viscous_number *= 0.25;
@@ -215,7 +223,7 @@ void buildCoarseLevels(const Lattice& lattice, const StokesGeometry& geometry, d
     StokesGeometry g{&fluid, &distance, &liquid};
     buildCoefficients(l, g, viscous_number, coefficients, kinds);
     if (levels.size() <= count) levels.resize(count + 1);
-    levels[count++] = convertCoefficients<float>(coefficients);
+    convertCoefficients(coefficients, levels[count++]);
   }
   levels.resize(count);
 }

@@ -166,6 +166,15 @@ FreeSurface::FreeSurface(const MacGrid& grid, double fill_height, const std::vec
   extendIntoHalo(l, distance_);
 }
 
+FreeSurface& FreeSurface::operator=(const FreeSurface& other) {
+  grid_ = other.grid_;
+  full_ = other.full_;
+  empty_ = other.empty_;
+  travelled_ = other.travelled_;
+  copyField(other.distance_, distance_);
+  return *this;
+}
+
 void FreeSurface::advect(const FaceField<double>& velocity, double dt, double maximum_speed) {
   if (full_ || empty_ || maximum_speed == 0.0) return;
   // Only in the band does the level set tell where the surface is: a way that is longer is gone in parts, but not in

@@ -19,6 +19,9 @@ class FreeSurface {
   // Liquid below `fill_height` (m above the tank's floor) and in boxes (W).
   FreeSurface(const MacGrid& grid, double fill_height, const std::vector<Eigen::AlignedBox3d>& boxes);
 
+  FreeSurface(const FreeSurface&) = default;
+  FreeSurface& operator=(const FreeSurface& other);
+
   // Neither air in the tank nor, for `empty`, liquid.
   bool full() const { return full_; }
   bool empty() const { return empty_; }
@@ -59,7 +62,7 @@ class FreeSurface {
   struct Scratch {
     Scratch() = default;
     Scratch(const Scratch&) {}
-    Scratch& operator=(const Scratch&) { return *this; }
+    Scratch& operator=(const Scratch&) = delete;
     std::vector<double> field;
     std::vector<std::uint8_t> fixed;
   };

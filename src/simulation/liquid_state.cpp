@@ -189,13 +189,17 @@ LiquidMotion liquidMotion(const MacGrid& grid, const FaceField<double>& liquid_m
   for (int k = 0; k < l.faceEnd(2); ++k) {
     LiquidMotion& plane = planes[k];
     for (int j = 0; j < l.faceEnd(1); ++j) {
-      for (int i = 0; i < l.faceEnd(0); ++i) {
-        const auto c = l.index(i, j, k);
-        for (int a = 0; a < 3; ++a) {
-          const double momentum = liquid_mass[a][c] * velocity[a][c];
-          plane.momentum[a] += momentum;
-          plane.energy += 0.5 * momentum * velocity[a][c];
+      const auto row = l.index(0, j, k);
+      for (int a = 0; a < 3; ++a) {
+        const double *mass = liquid_mass[a].data() + row, *u = velocity[a].data() + row;
+        double momentum = 0.0, energy = 0.0;
+#pragma omp simd reduction(+ : momentum, energy)
+        for (int i = 0; i < l.faceEnd(0); ++i) {
+          momentum += mass[i] * u[i];
+          energy += 0.5 * mass[i] * u[i] * u[i];
         }
+        plane.momentum[a] += momentum;
+        plane.energy += energy;
       }
     }
   }
@@ -212,15 +216,22 @@ LiquidMotion liquidMotion(const MacGrid& grid, const FaceField<double>& liquid_m
 double liquidPotential(const MacGrid& grid, const FreeSurface& surface, const std::vector<double>& cell_fluid,
                        double density, const Eigen::Vector3d& gravity) {
   const Lattice& l = grid.lattice;
-  std::vector<double> planes(l.n[2]);  // as above
+  std::vector<double> planes(l.n[2], 0.0);  // as above
 #pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int k = 0; k < l.n[2]; ++k) {
     for (int j = 0; j < l.n[1]; ++j) {
+      const double* distance = surface.distance().data() + l.index(0, j, k);
+      const double* fluid = cell_fluid.data() + l.index(0, j, k);
+      // Parts of the cells, and their first moment along x.
+      double sum = 0.0, moment = 0.0;
+#pragma omp simd reduction(+ : sum, moment)
       for (int i = 0; i < l.n[0]; ++i) {
-        const auto c = l.index(i, j, k);
-        const double part = std::clamp(0.5 - surface.distance()[c], 0.0, 1.0) * cell_fluid[c];
-        if (part > 0.0) planes[k] -= part * gravity.dot(grid.cellCenter(i, j, k));
+        const double inside = 0.5 - distance[i], below = inside < 0.0 ? 0.0 : inside;
+        const double part = (below > 1.0 ? 1.0 : below) * fluid[i];
+        sum += part;
+        moment += i * part;
       }
+      planes[k] -= sum * gravity.dot(grid.cellCenter(0, j, k)) + moment * grid.h * gravity[0];
     }
   }
   double potential = 0.0;

@@ -83,6 +83,6 @@ void addPressureForce(const StaggeredCoefficients<Real>& c, const std::vector<Re
 
 // The same coefficients in another precision.
 template <class To, class From>
-StaggeredCoefficients<To> convertCoefficients(const StaggeredCoefficients<From>& c);
+void convertCoefficients(const StaggeredCoefficients<From>& c, StaggeredCoefficients<To>& out);
 
 }  // namespace monolith

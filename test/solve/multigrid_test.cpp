@@ -62,7 +62,7 @@ struct VelocityCase {
       level = coarsened(level);
       number *= 0.25;
       fill = (fill + 1) / 2;
-      coarse.push_back(convertCoefficients<float>(box(level, number, fill)));
+      convertCoefficients(box(level, number, fill), coarse.emplace_back());
     }
     multigrid.set(l, blocks, std::move(transfer), coarse, coarse.size(), 1, 2);
     x.assign(3 * l.size, 0.0f);
