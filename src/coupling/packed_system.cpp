@@ -44,8 +44,8 @@ void PackedSystem::set(StepProblem& problem) {
   } else {
     krylov_.forget();
   }
-  faces_single_ = faces_.converted<float>();
-  cells_single_ = cells_.converted<float>();
+  faces_.convertTo(faces_single_);
+  cells_.convertTo(cells_single_);
   flux_weight_ = std::max(1.0, 2.0 * p.viscous_number);
   preconditioner_.set(p, faces_single_, cells_single_, transfer_, impulse_);
   scale_.resize(bodySize());

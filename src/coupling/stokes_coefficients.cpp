@@ -85,29 +85,42 @@ void buildSamples(const SampleBuilder& samples, double viscous_number, std::ptrd
 // The same for the cells of a row that markCells() found plain; zero for the others.
 void buildPlainRow(const SampleBuilder& samples, double viscous_number, std::ptrdiff_t row,
                    const std::vector<std::uint8_t>& mark, StaggeredCoefficients<double>& out) {
+  constexpr auto kAir = static_cast<std::uint8_t>(FaceKind::kAir);
+  const Lattice& l = samples.lattice;
   const int width = static_cast<int>(mark.size());
   const std::uint8_t* m = mark.data();
   const double* d = samples.geometry.liquid_distance->data() + row;
   const double number = 2.0 * viscous_number;
   const auto part = [](double x) { return std::min(std::max(0.5 - x, 0.0), 1.0); };
-  double* normal[3];
-  for (int a = 0; a < 3; ++a) normal[a] = out.normal[a].data() + row;
+  const auto kindsOf = [&](int a) { return reinterpret_cast<const std::uint8_t*>(samples.kinds(a)) + row; };
+  thread_local std::vector<std::uint8_t> joined;  // cells whose sample has no end in the air
+  joined.resize(width);
+  std::uint8_t* has = joined.data();
+  for (int a = 0; a < 3; ++a) {
+    const std::uint8_t* kind = kindsOf(a);
+    const auto s = l.stride[a];
 #pragma omp simd
-  for (int i = 0; i < width; ++i) {
-    const double value = m[i] == SampleBuilder::kPlain ? number * part(d[i]) : 0.0;
-    normal[0][i] = value;
-    normal[1][i] = value;
-    normal[2][i] = value;
+    for (int i = 0; i < width; ++i) {
+      has[i] = (m[i] == SampleBuilder::kPlain) & (kind[i] != kAir) & (kind[i + s] != kAir);
+    }
+    double* normal = out.normal[a].data() + row;
+#pragma omp simd
+    for (int i = 0; i < width; ++i) normal[i] = has[i] ? number * part(d[i]) : 0.0;
   }
   for (int p = 0; p < 3; ++p) {
-    const auto sa = samples.lattice.stride[kShearPairs[p][0]];
-    const auto sb = samples.lattice.stride[kShearPairs[p][1]];
+    const auto sa = l.stride[kShearPairs[p][0]], sb = l.stride[kShearPairs[p][1]];
+    const std::uint8_t *kind_a = kindsOf(kShearPairs[p][0]), *kind_b = kindsOf(kShearPairs[p][1]);
+#pragma omp simd
+    for (int i = 0; i < width; ++i) {
+      has[i] = (m[i] == SampleBuilder::kPlain) & (kind_a[i] != kAir) & (kind_a[i - sb] != kAir) & (kind_b[i] != kAir) &
+               (kind_b[i - sa] != kAir);
+    }
     double* first = out.shear[p][0].data() + row;
     double* second = out.shear[p][1].data() + row;
 #pragma omp simd
     for (int i = 0; i < width; ++i) {
       const double liquid = part(0.25 * (d[i] + d[i - sa] + d[i - sb] + d[i - sa - sb]));
-      const double weight = m[i] == SampleBuilder::kPlain ? std::sqrt(viscous_number * liquid) : 0.0;
+      const double weight = has[i] ? std::sqrt(viscous_number * liquid) : 0.0;
       first[i] = weight;
       second[i] = weight;
     }

@@ -42,10 +42,12 @@ void findFaceKinds(const Lattice& l, const StokesGeometry& g, const StaggeredCoe
 }
 
 void SampleBuilder::markCells(std::ptrdiff_t row, int width, std::vector<std::uint8_t>& mark) const {
-  static_assert(static_cast<int>(FaceKind::kFluid) == 0, "plain cells are those whose kinds are all zero");
+  // Of the two bits of a kind both or none are set outside of solids.
+  static_assert(static_cast<int>(FaceKind::kFluid) == 0 && static_cast<int>(FaceKind::kSliver) == 1 &&
+                static_cast<int>(FaceKind::kSolid) == 2 && static_cast<int>(FaceKind::kAir) == 3);
   constexpr auto kAir = static_cast<std::uint8_t>(FaceKind::kAir);
   mark.assign(2 * width, 0);
-  std::uint8_t* unlike_fluid = mark.data();
+  std::uint8_t* solid = mark.data();
   std::uint8_t* unlike_air = mark.data() + width;
   for (int a = 0; a < 3; ++a) {
     const auto* kind = reinterpret_cast<const std::uint8_t*>(kinds_[a].data()) + row;
@@ -54,12 +56,13 @@ void SampleBuilder::markCells(std::ptrdiff_t row, int width, std::vector<std::ui
     const auto sc = lattice.stride[(a + 2) % 3];
 #pragma omp simd
     for (int i = 0; i < width; ++i) {
-      unlike_fluid[i] |= kind[i] | kind[i + s] | kind[i - sb] | kind[i - sc];
-      unlike_air[i] |= (kind[i] ^ kAir) | (kind[i + s] ^ kAir) | (kind[i - sb] ^ kAir) | (kind[i - sc] ^ kAir);
+      const std::uint8_t here = kind[i], next = kind[i + s], b = kind[i - sb], c = kind[i - sc];
+      solid[i] |= (here ^ (here >> 1)) | (next ^ (next >> 1)) | (b ^ (b >> 1)) | (c ^ (c >> 1));
+      unlike_air[i] |= (here ^ kAir) | (next ^ kAir) | (b ^ kAir) | (c ^ kAir);
     }
   }
   for (int i = 0; i < width; ++i) {
-    mark[i] = unlike_fluid[i] == 0 ? kPlain : unlike_air[i] == 0 ? kAllAir : kMixed;
+    mark[i] = unlike_air[i] == 0 ? kAllAir : (solid[i] & 1) == 0 ? kPlain : kMixed;
   }
   mark.resize(width);
 }

@@ -25,6 +25,7 @@ class SampleBuilder {
       : lattice(l), geometry(g), kinds_(kinds) {}
 
   FaceKind kind(int axis, std::ptrdiff_t f) const { return kinds_[axis][f]; }
+  const FaceKind* kinds(int axis) const { return kinds_[axis].data(); }
   // Of component `axis`, from face a to the next along `along`.
   FittedSegment segment(int axis, std::ptrdiff_t a, int along) const {
     const auto b = a + lattice.stride[along];
@@ -40,8 +41,8 @@ class SampleBuilder {
     const auto sb = lattice.stride[b];
     return liquidOfCube(0.25 * (d[c] + d[c - sa] + d[c - sb] + d[c - sa - sb]));
   }
-  // What a row of cells is like: plain if all faces that the samples of a cell join are in the liquid, far from any
-  // surface of a solid; air if all are in the air, where there are no samples.
+  // What a row of cells is like: plain if none of the faces that the samples of a cell join is in a solid or cut by
+  // one; air if all are in the air, where there are no samples.
   enum Mark : std::uint8_t { kPlain, kMixed, kAllAir };
   void markCells(std::ptrdiff_t row, int width, std::vector<std::uint8_t>& mark) const;
 

@@ -84,8 +84,7 @@ class StencilBlocks {
 
   // The same in another precision.
   template <class To>
-  StencilBlocks<To, Count> converted() const {
-    StencilBlocks<To, Count> out;
+  void convertTo(StencilBlocks<To, Count>& out) const {
     out.blocks_.resize(blocks_.size());
     std::memcpy(out.blocks_.data(), blocks_.data(), blocks_.size() * sizeof(Block));
     out.segments_.resize(segments_.size());
@@ -96,8 +95,8 @@ class StencilBlocks {
     out.lattice_ = lattice_;
     out.anew_ = anew_;
     out.build_ = build_;
+    out.lost_.clear();
     for (const Lost& lost : lost_) out.lost_.push_back({lost.component, lost.place});
-    return out;
   }
 
  private:
@@ -123,6 +122,15 @@ class StencilBlocks {
     std::vector<std::uint64_t> hash;   // of each pattern
     std::vector<std::int32_t> number;  // of each pattern among all planes'
 
+    // All but its memory.
+    void clear() {
+      for (auto& of_component : blocks) of_component.clear();
+      row_ends.clear();
+      values.clear();
+      origin.clear();
+      hash.clear();
+      number.clear();
+    }
     std::int32_t add(const Real* pattern, std::int32_t from) {
       values.insert(values.end(), pattern, pattern + kSize);
       origin.push_back(from);
@@ -139,11 +147,10 @@ class StencilBlocks {
     std::size_t patterns() const { return values.size() / kSize; }
   };
   template <class FillRow>
-  void buildPlane(int k, const std::vector<int>& first, FillRow&& fill, const SteadyRows* kept, const Last& before,
-                  Plane& plane) const;
-  std::int32_t numberPatterns(std::vector<Plane>& planes, std::size_t patterns_before) const;
-  void merge(std::vector<Plane>& planes, int components, std::size_t patterns_before);
-  void findLost(int components, const Last& before);
+  void buildPlane(int k, const std::vector<int>& first, FillRow&& fill, const SteadyRows* kept, Plane& plane) const;
+  std::int32_t numberPatterns();
+  void merge(int components);
+  void findLost(int components);
 
   // Some of a pattern's words tell most patterns apart; which are the same is seen from all of them.
   static std::uint64_t hashOf(const Real* pattern) {
@@ -180,6 +187,9 @@ class StencilBlocks {
   bool anew_ = true;  // the last build was the first on its lattice
   long build_ = 0;
   std::vector<Lost> lost_;  // blocks that the build before had
+  // Of use within a build only, kept for their memory.
+  Last last_;
+  std::vector<Plane> planes_;
 };
 
 template <class Real, int Count>
@@ -189,33 +199,34 @@ void StencilBlocks<Real, Count>::build(const Lattice& l, const std::vector<int>&
   const int components = static_cast<int>(first.size());
   anew_ = build_ == 0 || lattice_.n != l.n || lattice_.periodic != l.periodic;
   const bool keeps = !anew_ && wouldKeep(steady);
-  Last last{std::move(blocks_), std::move(values_), std::move(row_begin_)};
+  last_.blocks.swap(blocks_);
+  last_.values.swap(values_);
+  last_.row_begin.swap(row_begin_);
   lattice_ = l;
   ++build_;
   generation_ = steady != nullptr ? steady->generation() : kNoGeneration;
-  std::vector<Plane> planes(l.faceEnd(2));
+  planes_.resize(l.faceEnd(2));
 #pragma omp parallel for schedule(static, kPlanesInTurn)
-  for (int k = 0; k < l.faceEnd(2); ++k) buildPlane(k, first, fill, keeps ? steady : nullptr, last, planes[k]);
-  const std::size_t patterns_before = last.patterns();
-  last.values.resize(0);
-  merge(planes, components, patterns_before);
-  findLost(components, last);
+  for (int k = 0; k < l.faceEnd(2); ++k) buildPlane(k, first, fill, keeps ? steady : nullptr, planes_[k]);
+  merge(components);
+  findLost(components);
 }
 
 template <class Real, int Count>
 template <class FillRow>
 void StencilBlocks<Real, Count>::buildPlane(int k, const std::vector<int>& first, FillRow&& fill,
-                                            const SteadyRows* kept, const Last& before, Plane& plane) const {
+                                            const SteadyRows* kept, Plane& plane) const {
   const Lattice& l = lattice_;
   const int components = static_cast<int>(first.size());
   const int row_blocks = (l.n[0] + kLanes - 1) / kLanes;
   const int rows = l.faceEnd(1);
+  plane.clear();
   plane.blocks.resize(components);
   Row row;
   for (auto& r : row) r.resize(row_blocks * kLanes);
   std::vector<Real> candidate(kSize);
   // The last build's patterns, in this plane.
-  std::vector<std::int32_t> here(kept != nullptr ? before.patterns() : 0, -1);
+  std::vector<std::int32_t> here(kept != nullptr ? last_.patterns() : 0, -1);
   for (int component = 0; component < components; ++component) {
     std::vector<Block>& blocks = plane.blocks[component];
     std::vector<std::int32_t> above(row_blocks, -1);  // patterns of the row before
@@ -225,10 +236,10 @@ void StencilBlocks<Real, Count>::buildPlane(int k, const std::vector<int>& first
       const auto start = l.index(first[component], j, k);
       if (kept != nullptr && kept->steady(j, k)) {
         const std::size_t at = (static_cast<std::size_t>(k) * components + component) * rows + j;
-        for (auto b = before.row_begin[at]; b < before.row_begin[at + 1]; ++b) {
-          const Block& block = before.blocks[b];
+        for (auto b = last_.row_begin[at]; b < last_.row_begin[at + 1]; ++b) {
+          const Block& block = last_.blocks[b];
           std::int32_t& pattern = here[block.pattern];
-          if (pattern < 0) pattern = plane.add(before.values.data() + block.pattern * kSize, block.pattern);
+          if (pattern < 0) pattern = plane.add(last_.values.data() + block.pattern * kSize, block.pattern);
           above[(block.place - start) / kLanes] = last = pattern;
           blocks.push_back({block.place, pattern});
         }
@@ -259,13 +270,13 @@ void StencilBlocks<Real, Count>::buildPlane(int k, const std::vector<int>& first
 
 // One after the other, so that patterns are numbered the same way on any number of threads. Returns how many there are.
 template <class Real, int Count>
-std::int32_t StencilBlocks<Real, Count>::numberPatterns(std::vector<Plane>& planes, std::size_t patterns_before) const {
+std::int32_t StencilBlocks<Real, Count>::numberPatterns() {
   std::size_t most = 0;
-  for (const Plane& plane : planes) most += plane.origin.size();
+  for (const Plane& plane : planes_) most += plane.origin.size();
   IndexTable table(most);
-  std::vector<std::int32_t> renumbered(patterns_before, -1);
+  std::vector<std::int32_t> renumbered(last_.patterns(), -1);
   std::vector<std::pair<const Real*, std::uint64_t>> known;
-  for (Plane& plane : planes) {
+  for (Plane& plane : planes_) {
     plane.number.resize(plane.origin.size());
     for (std::size_t p = 0; p < plane.origin.size(); ++p) {
       const std::int32_t origin = plane.origin[p];
@@ -284,16 +295,15 @@ std::int32_t StencilBlocks<Real, Count>::numberPatterns(std::vector<Plane>& plan
   return table.count();
 }
 
-// Uses up the planes.
 template <class Real, int Count>
-void StencilBlocks<Real, Count>::merge(std::vector<Plane>& planes, int components, std::size_t patterns_before) {
+void StencilBlocks<Real, Count>::merge(int components) {
   const int rows = lattice_.faceEnd(1);
-  values_.resize(numberPatterns(planes, patterns_before) * kSize);
+  values_.resize(numberPatterns() * kSize);
   // Where each plane's part begins, and which patterns it is the first to have.
   std::vector<std::int32_t> first_block, first_pattern;
   segments_.clear();
   std::int32_t count = 0, patterns = 0;
-  for (const Plane& plane : planes) {
+  for (const Plane& plane : planes_) {
     first_block.push_back(count);
     first_pattern.push_back(patterns);
     for (int component = 0; component < components; ++component) {
@@ -304,11 +314,11 @@ void StencilBlocks<Real, Count>::merge(std::vector<Plane>& planes, int component
     for (const std::int32_t number : plane.number) patterns = std::max(patterns, number + 1);
   }
   blocks_.resize(count);
-  row_begin_.resize(planes.size() * components * rows + 1);
+  row_begin_.resize(planes_.size() * components * rows + 1);
   row_begin_[0] = 0;
 #pragma omp parallel for schedule(static, kPlanesInTurn)
-  for (std::size_t k = 0; k < planes.size(); ++k) {
-    Plane& plane = planes[k];
+  for (std::size_t k = 0; k < planes_.size(); ++k) {
+    Plane& plane = planes_[k];
     std::int32_t begin = first_block[k], next = first_pattern[k];
     for (std::size_t p = 0; p < plane.number.size(); ++p) {
       if (plane.number[p] != next) continue;
@@ -321,13 +331,12 @@ void StencilBlocks<Real, Count>::merge(std::vector<Plane>& planes, int component
       }
       for (const Block& block : plane.blocks[component]) blocks_[begin++] = {block.place, plane.number[block.pattern]};
     }
-    plane = {};
   }
 }
 
 // Both builds in the same order: by rows, and along them.
 template <class Real, int Count>
-void StencilBlocks<Real, Count>::findLost(int components, const Last& before) {
+void StencilBlocks<Real, Count>::findLost(int components) {
   lost_.clear();
   if (anew_) return;
   const int rows = lattice_.faceEnd(1);
@@ -337,10 +346,10 @@ void StencilBlocks<Real, Count>::findLost(int components, const Last& before) {
   for (std::size_t k = 0; k < planes.size(); ++k) {
     for (std::size_t at = k * plane_rows; at < (k + 1) * plane_rows; ++at) {
       auto now = row_begin_[at];
-      for (auto b = before.row_begin[at]; b < before.row_begin[at + 1]; ++b) {
-        while (now < row_begin_[at + 1] && blocks_[now].place < before.blocks[b].place) ++now;
-        if (now < row_begin_[at + 1] && blocks_[now].place == before.blocks[b].place) continue;
-        planes[k].push_back({static_cast<std::int32_t>(at / rows % components), before.blocks[b].place});
+      for (auto b = last_.row_begin[at]; b < last_.row_begin[at + 1]; ++b) {
+        while (now < row_begin_[at + 1] && blocks_[now].place < last_.blocks[b].place) ++now;
+        if (now < row_begin_[at + 1] && blocks_[now].place == last_.blocks[b].place) continue;
+        planes[k].push_back({static_cast<std::int32_t>(at / rows % components), last_.blocks[b].place});
       }
     }
   }

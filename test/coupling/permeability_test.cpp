@@ -29,7 +29,7 @@ struct Plates {
       buildFaceBlocks(problem->coefficients, blocks, &transfer, &free);
       return blocks;
     }();
-    single = faces.converted<float>();
+    faces.convertTo(single);
     const auto& levels = problem->coarse.levels;
     velocity.set(l, single, transfer, levels, levels.size(), problem->coarse.generation(), 3);
     permeability.set(*problem, problem->viscous_number, velocity, free);

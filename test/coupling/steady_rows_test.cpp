@@ -57,7 +57,8 @@ struct Built {
       held.set(l, c.has_pressure, c.open, impulse, steady);
       return;
     }
-    const FaceBlocks<float> single = faces.converted<float>();
+    FaceBlocks<float> single;
+    faces.convertTo(single);
     velocity.set(l, single, transfer, problem.coarse.levels, problem.coarse.levels.size(), problem.coarse.generation(),
                  2);
     permeability.set(problem, at.number, velocity, impulse);

@@ -187,7 +187,8 @@ TEST_P(StokesStencil, SmootherDividesByTheSmoothingDiagonal) {
   FaceField<double> diagonal, effective;
   diagonalAndTies(c, diagonal, effective);
   const FaceField<double> AU = plainMomentum();
-  const FaceBlocks<float> single = faces.converted<float>();
+  FaceBlocks<float> single;
+  faces.convertTo(single);
   FaceField<float> x, b, d, next;
   for (int a = 0; a < 3; ++a) {
     x[a].assign(U[a].begin(), U[a].end());
