@@ -108,12 +108,17 @@ void LiquidPreconditioner::apply(const float* r, float flux_scale, float* x) {
     ++sealed;
   }
   if (sealed > 0) fillHalo(l, phi);
-  project(l, *impulse_, u, phi, out);
+  project(l, faces_->planes(), *impulse_, u, phi, out);
   float* p = x + 3 * size;
-  const float *g = g_.data(), *weight = weight_.data();
-  countWork(l.size, 2.0, 4.0 * sizeof(float));
-#pragma omp parallel for simd schedule(static)
-  for (std::ptrdiff_t i = 0; i < size; ++i) p[i] = phi[i] + weight[i] * g[i];
+  const Planes& planes = cells_->planes();
+  countWork(static_cast<std::size_t>(l.stride[2] * (planes.end - planes.first)), 2.0, 4.0 * sizeof(float));
+#pragma omp parallel for schedule(static)
+  for (int k = planes.first; k < planes.end; ++k) {
+    const float *g = g_.data(), *weight = weight_.data();
+    const std::ptrdiff_t begin = l.planeBegin(k), end = begin + l.stride[2];
+#pragma omp simd
+    for (std::ptrdiff_t i = begin; i < end; ++i) p[i] = phi[i] + weight[i] * g[i];
+  }
   for (float* field : {x, x + size, x + 2 * size, p}) fillHalo(l, field);
 }
 

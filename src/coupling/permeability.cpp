@@ -35,7 +35,7 @@ void Permeability::set(const StepProblem& problem, double largest_number, Veloci
     assignZero(l.size, impulse_[a]);
 #pragma omp parallel for simd schedule(static)
     for (std::size_t f = 0; f < l.size; ++f) share_[f] = mass[f] > 0.0 ? static_cast<float>(open[f] / mass[f]) : 0.0f;
-    prolongateFaces(level.lattice, a, coarse_[a].data(), l, share_.data(), impulse_[a].data());
+    prolongateFaces(level.lattice, a, coarse_[a].data(), l, allPlanes(l), share_.data(), impulse_[a].data());
 #pragma omp parallel for simd schedule(static)
     for (std::size_t f = 0; f < l.size; ++f) impulse_[a][f] = std::min(free[a][f], impulse_[a][f]);
     fillHalo(l, impulse_[a]);

@@ -45,9 +45,19 @@ struct Lattice {
   }
   // One past the last face along an axis.
   int faceEnd(int axis) const { return periodic[axis] ? n[axis] : n[axis] + 1; }
+  // Where the plane of cells or faces k begins in a field, halo and all.
+  std::ptrdiff_t planeBegin(int k) const { return stride[2] * (k + kLowHalo); }
   bool anyPeriodic() const { return periodic[0] || periodic[1] || periodic[2]; }
   long cells() const { return static_cast<long>(n[0]) * n[1] * n[2]; }
 };
+
+// Planes of cells or faces, k from `first` to before `end`: those that hold all unknowns. Loops over them in equal
+// parts give each thread what it has of stencils (stencil_blocks.h), which stays in its cache; beyond them fields are
+// zero.
+struct Planes {
+  int first = 0, end = 0;
+};
+inline Planes allPlanes(const Lattice& l) { return {0, l.faceEnd(2)}; }
 
 // Smaller lattices are not worth waking a second thread for; nor are these if there is much to do for each cell.
 constexpr std::size_t kSizeWorthSharing = 5000;

@@ -1,6 +1,7 @@
 #include "solve/pressure_multigrid.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "solve/kernel_work.h"
 #include "solve/staggered_transfer.h"
@@ -22,6 +23,17 @@ constexpr float kLargestLift = 1.5f;
 // is half a fine cell lower, or higher if the surface runs through it.
 float liftedToAir(float g, bool inside) {
   return inside ? 2.0f * g / (1.0f - 0.5f * std::min(g, kLargestLift)) : 2.0f * g / (1.0f + 0.5f * g);
+}
+
+// Those that hold a cell of kind 1, liquid.
+Planes planesWith(const std::vector<std::uint8_t>& kind, const Lattice& l) {
+  Planes out;
+  for (int k = 0; k < l.n[2]; ++k) {
+    if (std::memchr(kind.data() + l.planeBegin(k), 1, static_cast<std::size_t>(l.stride[2])) == nullptr) continue;
+    if (out.end == 0) out.first = k;
+    out.end = k + 1;
+  }
+  return out;
 }
 
 }  // namespace
@@ -182,6 +194,7 @@ void PressureMultigrid::finish(const Network& network, const SteadyRows* steady,
   if (&level != &levels_[0]) level.build = -1;
   for (auto* field : {&level.x, &level.next, &level.d}) level.blocks.clear(0, level.build, *field);
   level.build = level.blocks.build();
+  level.planes = planesWith(network.kind, l);
   // L is an M-matrix: the spectrum of D^-1 L lies in [0, 2].
   level.range.largest = 2.0f;
   level.range.ratio = kRatio;
@@ -275,10 +288,15 @@ void PressureMultigrid::residual(Level& level, float* r) const {
   const float *x = level.x.data(), *b = level.right, *mask = level.mask.data();
   if (level.partial) {
     // Away from its blocks x is zero.
-    const auto size = static_cast<std::ptrdiff_t>(level.lattice.size);
-    countWork(level.lattice.size, 0.0, 3.0 * sizeof(float));
-#pragma omp parallel for simd schedule(static)
-    for (std::ptrdiff_t i = 0; i < size; ++i) r[i] = mask[i] > 0.0f ? b[i] : 0.0f;
+    const Lattice& l = level.lattice;
+    const std::ptrdiff_t size = l.stride[2];
+    countWork(static_cast<std::size_t>(size * (level.planes.end - level.planes.first)), 0.0, 3.0 * sizeof(float));
+#pragma omp parallel for schedule(static)
+    for (int k = level.planes.first; k < level.planes.end; ++k) {
+      const std::ptrdiff_t begin = l.planeBegin(k);
+#pragma omp simd
+      for (std::ptrdiff_t i = begin; i < begin + size; ++i) r[i] = mask[i] > 0.0f ? b[i] : 0.0f;
+    }
   }
   level.blocks.forEach([&](int, std::ptrdiff_t c, const float* k) {
     const float* has = level.partial ? mask + c : k + kInverse * kLanes;
@@ -355,11 +373,11 @@ void PressureMultigrid::descend(std::size_t index) {
   residual(level, level.next.data());
   Level& coarse = levels_[index + 1];
   // The operator is scaled by the cell width squared, which doubles twice per level.
-  restrictResidual(level.lattice, level.next.data(), coarse.lattice, 4.0f, coarse.b.data());
+  restrictResidual(level.lattice, level.next.data(), coarse.lattice, coarse.planes, 4.0f, coarse.b.data());
   coarse.right = coarse.b.data();
   descend(index + 1);
   for (const Extension& e : coarse.extension) coarse.x[e.to] = 0.5f * (coarse.x[e.a] + coarse.x[e.b]);
-  prolongateCells(coarse.lattice, coarse.x.data(), level.lattice, level.mask.data(), level.x.data());
+  prolongateCells(coarse.lattice, coarse.x.data(), level.lattice, level.planes, level.mask.data(), level.x.data());
   // The extension must not be seen by the coarse operator next time.
   for (const Extension& e : coarse.extension) coarse.x[e.to] = 0.0f;
   fillHalo(level.lattice, level.x);

@@ -51,6 +51,7 @@ class PressureMultigrid {
   struct Level {
     Lattice lattice;
     StencilBlocks<float, kCount> blocks;
+    Planes planes;  // that hold liquid
     std::vector<float> mask, x, next, b, d;
     std::vector<Extension> extension;
     const float* right = nullptr;

@@ -55,15 +55,18 @@ void restrictFaces(const Lattice& fine, int axis, const std::vector<Real>& from,
 
 // Fine rows are summed first, contiguously, then along x: for each coarse face eight fine ones are streamed, 10 or 15
 // flops.
-void restrictResidual(const Lattice& fine, int axis, const float* from, const Lattice& coarse, float* to) {
+void restrictResidual(const Lattice& fine, int axis, const float* from, const Lattice& coarse, const Planes& planes,
+                      float* to) {
   const auto sy = fine.stride[1];
   const auto sz = fine.stride[2];
   int end[3];
   // The last coarse face may lie beyond the fine grid, where there is nothing.
   for (int a = 0; a < 3; ++a) end[a] = a == axis ? std::min(coarse.faceEnd(a), fine.n[a] / 2 + 1) : coarse.n[a];
-  countWork(static_cast<std::size_t>(end[0]) * end[1] * end[2], axis == 0 ? 10.0 : 15.0, 9.0 * sizeof(float));
-#pragma omp parallel for schedule(static, kPlanesInTurn) if (fine.size >= kSizeWorthSharing)
-  for (int k = 0; k < end[2]; ++k) {
+  end[2] = std::min(end[2], planes.end);
+  countWork(static_cast<std::size_t>(end[0]) * end[1] * std::max(0, end[2] - planes.first), axis == 0 ? 10.0 : 15.0,
+            9.0 * sizeof(float));
+#pragma omp parallel for schedule(static) if (fine.size >= kSizeWorthSharing)
+  for (int k = planes.first; k < end[2]; ++k) {
     std::vector<float> sums(2 * end[0] + 2);
     float* sum = sums.data() + 1;
     const int width = 2 * end[0];
@@ -92,13 +95,16 @@ void restrictResidual(const Lattice& fine, int axis, const float* from, const La
   }
 }
 
-void restrictResidual(const Lattice& fine, const float* from, const Lattice& coarse, float factor, float* to) {
+void restrictResidual(const Lattice& fine, const float* from, const Lattice& coarse, const Planes& planes, float factor,
+                      float* to) {
   const auto sy = fine.stride[1];
   const auto sz = fine.stride[2];
   const int width = 2 * coarse.n[0];
-  countWork(static_cast<std::size_t>(coarse.cells()), 8.0, 9.0 * sizeof(float));
-#pragma omp parallel for schedule(static, kPlanesInTurn) if (fine.size >= kSizeWorthSharing)
-  for (int k = 0; k < coarse.n[2]; ++k) {
+  const int end = std::min(coarse.n[2], planes.end);
+  countWork(static_cast<std::size_t>(coarse.n[0]) * coarse.n[1] * std::max(0, end - planes.first), 8.0,
+            9.0 * sizeof(float));
+#pragma omp parallel for schedule(static) if (fine.size >= kSizeWorthSharing)
+  for (int k = planes.first; k < end; ++k) {
     std::vector<float> sum(width);
     for (int j = 0; j < coarse.n[1]; ++j) {
       const float* f = from + fine.index(0, 2 * j, 2 * k);
@@ -154,12 +160,12 @@ class CoarseRow {
 }  // namespace
 
 // For each fine face `to` is read and written and the weight read; the coarse field comes in once: 12.5 bytes, 8 flops.
-void prolongateFaces(const Lattice& coarse, int axis, const float* from, const Lattice& fine, const float* weight,
-                     float* to) {
+void prolongateFaces(const Lattice& coarse, int axis, const float* from, const Lattice& fine, const Planes& planes,
+                     const float* weight, float* to) {
   const int pairs = (fine.faceEnd(0) + 1) / 2;
-  countWork(static_cast<std::size_t>(fine.faceEnd(0)) * fine.faceEnd(1) * fine.faceEnd(2), 8.0, 12.5);
-#pragma omp parallel for schedule(static, kPlanesInTurn) if (fine.size >= kSizeWorthSharing)
-  for (int k = 0; k < fine.faceEnd(2); ++k) {
+  countWork(static_cast<std::size_t>(fine.faceEnd(0)) * fine.faceEnd(1) * (planes.end - planes.first), 8.0, 12.5);
+#pragma omp parallel for schedule(static) if (fine.size >= kSizeWorthSharing)
+  for (int k = planes.first; k < planes.end; ++k) {
     CoarseRow interpolated(coarse, axis);
     for (int j = 0; j < fine.faceEnd(1); ++j) {
       const float* c = interpolated.at(from, j, k);
@@ -183,11 +189,13 @@ void prolongateFaces(const Lattice& coarse, int axis, const float* from, const L
 }
 
 // As prolongateFaces().
-void prolongateCells(const Lattice& coarse, const float* from, const Lattice& fine, const float* mask, float* to) {
+void prolongateCells(const Lattice& coarse, const float* from, const Lattice& fine, const Planes& planes,
+                     const float* mask, float* to) {
   const int pairs = (fine.n[0] + 1) / 2;
-  countWork(static_cast<std::size_t>(fine.cells()), 8.0, 12.5);
-#pragma omp parallel for schedule(static, kPlanesInTurn) if (fine.size >= kSizeWorthSharing)
-  for (int k = 0; k < fine.n[2]; ++k) {
+  const int end = std::min(fine.n[2], planes.end);
+  countWork(static_cast<std::size_t>(fine.n[0]) * fine.n[1] * std::max(0, end - planes.first), 8.0, 12.5);
+#pragma omp parallel for schedule(static) if (fine.size >= kSizeWorthSharing)
+  for (int k = planes.first; k < end; ++k) {
     CoarseRow interpolated(coarse, -1);
     for (int j = 0; j < fine.n[1]; ++j) {
       const float* c = interpolated.at(from, j, k);

@@ -21,17 +21,22 @@ template <class Real>
 void restrictFaces(const Lattice& fine, int axis, const std::vector<Real>& from, const Lattice& coarse,
                    std::vector<Real>& to);
 
+// Those of the multigrid write the planes of `to` that they are told.
+
 // Averages with weights 1/4, 1/2, 1/4 along the axis of the faces: the adjoint of linear interpolation there.
 // The halo of `from` must be filled.
-void restrictResidual(const Lattice& fine, int axis, const float* from, const Lattice& coarse, float* to);
+void restrictResidual(const Lattice& fine, int axis, const float* from, const Lattice& coarse, const Planes& planes,
+                      float* to);
 
 // to = factor * cell averages over 2 x 2 x 2.
-void restrictResidual(const Lattice& fine, const float* from, const Lattice& coarse, float factor, float* to);
+void restrictResidual(const Lattice& fine, const float* from, const Lattice& coarse, const Planes& planes, float factor,
+                      float* to);
 
 // to += weight * interpolation of `from`; the halo of `from` must be filled.
-void prolongateFaces(const Lattice& coarse, int axis, const float* from, const Lattice& fine, const float* weight,
-                     float* to);
+void prolongateFaces(const Lattice& coarse, int axis, const float* from, const Lattice& fine, const Planes& planes,
+                     const float* weight, float* to);
 // to += interpolation of `from` where mask > 0; the halo of `from` must be filled.
-void prolongateCells(const Lattice& coarse, const float* from, const Lattice& fine, const float* mask, float* to);
+void prolongateCells(const Lattice& coarse, const float* from, const Lattice& fine, const Planes& planes,
+                     const float* mask, float* to);
 
 }  // namespace monolith

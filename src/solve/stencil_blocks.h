@@ -78,6 +78,8 @@ class StencilBlocks {
     }
   }
 
+  // Those that have blocks.
+  Planes planes() const { return range_; }
   std::size_t blocks() const { return blocks_.size(); }
   std::size_t lanes() const { return blocks_.size() * kLanes; }
   std::size_t patterns() const { return values_.size() / (Count * kLanes); }
@@ -93,6 +95,7 @@ class StencilBlocks {
 #pragma omp parallel for simd schedule(static)
     for (Eigen::Index i = 0; i < values_.size(); ++i) out.values_[i] = static_cast<To>(values_[i]);
     out.lattice_ = lattice_;
+    out.range_ = range_;
     out.anew_ = anew_;
     out.build_ = build_;
     out.lost_.clear();
@@ -180,6 +183,7 @@ class StencilBlocks {
 
   std::vector<Block> blocks_;            // by planes, within them by components, then by rows
   std::vector<Segment> segments_;        // blocks of one component in one plane
+  Planes range_;
   Values values_;
   std::vector<std::int32_t> row_begin_;  // in blocks_, of every row; one more at the end
   long generation_ = kNoGeneration;      // of the steady rows that it was built with
@@ -302,14 +306,20 @@ void StencilBlocks<Real, Count>::merge(int components) {
   // Where each plane's part begins, and which patterns it is the first to have.
   std::vector<std::int32_t> first_block, first_pattern;
   segments_.clear();
+  range_ = {};
   std::int32_t count = 0, patterns = 0;
-  for (const Plane& plane : planes_) {
+  for (std::size_t k = 0; k < planes_.size(); ++k) {
+    const Plane& plane = planes_[k];
     first_block.push_back(count);
     first_pattern.push_back(patterns);
     for (int component = 0; component < components; ++component) {
       const auto size = static_cast<std::int32_t>(plane.blocks[component].size());
       if (size > 0) segments_.push_back({component, count, count + size});
       count += size;
+    }
+    if (count > first_block.back()) {
+      if (range_.end == 0) range_.first = static_cast<int>(k);
+      range_.end = static_cast<int>(k) + 1;
     }
     for (const std::int32_t number : plane.number) patterns = std::max(patterns, number + 1);
   }

@@ -271,16 +271,21 @@ void transferredResidual(const Lattice& l, const FaceBlocks<float>& blocks, cons
 }
 
 // 40 bytes a cell for 9 flops: bound by memory.
-void project(const Lattice& l, const FaceField<float>& impulse, const Faces<const float>& x, const float* p,
-             const Faces<float>& y) {
-  const auto size = static_cast<std::ptrdiff_t>(l.size);
-  countWork(3 * l.size, 3.0, sizeof(float) * (3.0 + 1.0 / 3.0));
-  for (int a = 0; a < 3; ++a) {
-    const auto sa = l.stride[a];
-    const float *g = impulse[a].data(), *from = x[a];
-    float* to = y[a];
-#pragma omp parallel for simd schedule(static)
-    for (std::ptrdiff_t f = sa; f < size; ++f) to[f] = from[f] + g[f] * (p[f - sa] - p[f]);
+void project(const Lattice& l, const Planes& planes, const FaceField<float>& impulse, const Faces<const float>& x,
+             const float* p, const Faces<float>& y) {
+  const std::ptrdiff_t size = l.stride[2];
+  countWork(static_cast<std::size_t>(3 * size * (planes.end - planes.first)), 3.0, sizeof(float) * (3.0 + 1.0 / 3.0));
+#pragma omp parallel for schedule(static)
+  for (int k = planes.first; k < planes.end; ++k) {
+    const std::ptrdiff_t begin = l.planeBegin(k);
+    const float* here = p + begin;
+    for (int a = 0; a < 3; ++a) {
+      const float* before = here - l.stride[a];
+      const float *g = impulse[a].data() + begin, *from = x[a] + begin;
+      float* to = y[a] + begin;
+#pragma omp simd
+      for (std::ptrdiff_t f = 0; f < size; ++f) to[f] = from[f] + g[f] * (before[f] - here[f]);
+    }
   }
 }
 

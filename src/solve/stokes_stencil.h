@@ -82,8 +82,9 @@ void chebyshevStart(const FaceBlocks<float>& blocks, const Faces<const float>& b
 // r = transfer (b - A x)
 void transferredResidual(const Lattice& l, const FaceBlocks<float>& blocks, const Faces<const float>& x,
                          const Faces<const float>& b, const Faces<float>& r);
-// y = x + impulse times the difference of p, on all faces: y is x where the impulse is zero. Halos are not filled.
-void project(const Lattice& l, const FaceField<float>& impulse, const Faces<const float>& x, const float* p,
-             const Faces<float>& y);
+// y = x + impulse times the difference of p, on all faces of these planes: y is x where the impulse is zero. Halos are
+// not filled.
+void project(const Lattice& l, const Planes& planes, const FaceField<float>& impulse, const Faces<const float>& x,
+             const float* p, const Faces<float>& y);
 
 }  // namespace monolith

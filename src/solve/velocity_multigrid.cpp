@@ -67,12 +67,13 @@ void VelocityMultigrid::descend(std::size_t index) {
   transferredResidual(l, *level.blocks, constView(level.x), level.right, view(level.next));
   for (int a = 0; a < 3; ++a) {
     fillHalo(l, level.next[a]);
-    restrictResidual(l, a, level.next[a].data(), coarse.lattice, coarse.b[a].data());
+    restrictResidual(l, a, level.next[a].data(), coarse.lattice, coarse.blocks->planes(), coarse.b[a].data());
   }
   coarse.right = constView(coarse.b);
   descend(index + 1);
   for (int a = 0; a < 3; ++a) {
-    prolongateFaces(coarse.lattice, a, coarse.x[a].data(), l, (*level.transfer)[a].data(), level.x[a].data());
+    prolongateFaces(coarse.lattice, a, coarse.x[a].data(), l, level.blocks->planes(), (*level.transfer)[a].data(),
+                    level.x[a].data());
     fillHalo(l, level.x[a]);
   }
   smooth(level, degree_, false);

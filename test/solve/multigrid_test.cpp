@@ -175,7 +175,7 @@ struct PressureCase {
     std::vector<float> flow(3 * l.size, 0.0f), r = zero();
     const std::vector<float> still(flow);
     const std::size_t n = l.size;
-    project(l, impulse, {still.data(), still.data() + n, still.data() + 2 * n}, x.data(),
+    project(l, allPlanes(l), impulse, {still.data(), still.data() + n, still.data() + 2 * n}, x.data(),
             {flow.data(), flow.data() + n, flow.data() + 2 * n});
     applyDivergence(l, cells, {flow.data(), flow.data() + n, flow.data() + 2 * n}, 1.0f,
                     static_cast<const float*>(b.data()), r.data());

@@ -224,7 +224,8 @@ TEST_P(StokesStencil, ProjectionIsThePlainOne) {
     y[a].assign(l.size, 0.0f);
   }
   const std::vector<float> p(p_.begin(), p_.end());
-  project(l, impulse, {x[0].data(), x[1].data(), x[2].data()}, p.data(), {y[0].data(), y[1].data(), y[2].data()});
+  project(l, allPlanes(l), impulse, {x[0].data(), x[1].data(), x[2].data()}, p.data(),
+          {y[0].data(), y[1].data(), y[2].data()});
   forEachCell([&](std::ptrdiff_t f) {
     for (int a = 0; a < 3; ++a) EXPECT_NEAR(y[a][f], plain[a][f], 1e-5 * (1.0 + std::abs(plain[a][f])));
   });
