@@ -212,11 +212,29 @@ void PackedSystem::preconditionBodies(const std::vector<float>& from, std::vecto
   Eigen::Map<Eigen::VectorXf>(out, n) = (S_inverse_ * force).cast<float>();
 }
 
+// Of planes from below upwards, their fields one after the other: what each thread has of the stencils.
+Parts PackedSystem::liquidParts() const {
+  const Lattice& l = lattice();
+  const auto size = static_cast<std::ptrdiff_t>(l.size);
+  const Planes faces = faces_.planes(), cells = cells_.planes();
+  const int first = std::min(faces.first, cells.first), end = std::max(faces.end, cells.end);
+  const int at_once = static_cast<int>(std::max<std::ptrdiff_t>(1, kSumBlock / l.stride[2]));
+  Parts parts;
+  for (int k = first; k < end; k += at_once) {
+    for (int field = 0; field < 4; ++field) {
+      const std::ptrdiff_t shift = field * size;
+      appendParts(shift + l.planeBegin(k), shift + l.planeBegin(std::min(end, k + at_once)), parts);
+    }
+  }
+  return parts;
+}
+
 KrylovMaps PackedSystem::maps() {
   return {[this](auto& from, auto& to) { apply(faces_, cells_, columns_, from, to); },
           [this](auto& from, auto& to) { apply(faces_single_, cells_single_, columns_single_, from, to); },
           [this](auto& from, auto& to) { precondition(from, to); },
           liquidSize(),
+          liquidParts(),
           [this](const auto& from, auto& to) { applyBodies(columns_, from, to); },
           [this](const auto& from, auto& to) { preconditionBodies(from, to); }};
 }

@@ -69,6 +69,7 @@ class PackedSystem {
   void precondition(const std::vector<float>& from, std::vector<float>& to);
   // Its second half, for which `to` holds the liquid's.
   void preconditionBodies(const std::vector<float>& from, std::vector<float>& to) const;
+  Parts liquidParts() const;
   KrylovMaps maps();
 
   StepProblem* problem_ = nullptr;

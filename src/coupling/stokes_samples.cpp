@@ -20,11 +20,7 @@ void findFaceKinds(const Lattice& l, const StokesGeometry& g, const StaggeredCoe
   };
   for (auto& field : kinds) field.resize(l.size);
   const auto stride = l.stride[1];
-  const auto per_plane = static_cast<int>(l.stride[2] / stride), all = static_cast<int>(l.size / stride);
-#pragma omp parallel for schedule(static, kPlanesInTurn)
-  for (int row = 0; row < all; ++row) {
-    if (!isWanted(row % per_plane - low, row / per_plane - low)) continue;
-    const auto begin = row * stride;
+  const auto findRow = [&](std::ptrdiff_t begin) {
     for (int a = 0; a < 3; ++a) {
       const double* mass = c.mass[a].data() + begin;
       const float* distance = (*g.solid_distance)[a].data() + begin;
@@ -37,6 +33,14 @@ void findFaceKinds(const Lattice& l, const StokesGeometry& g, const StaggeredCoe
         const FaceKind moving = solid ? FaceKind::kSliver : FaceKind::kFluid;
         kind[f] = mass[f] > 0.0 ? moving : still;
       }
+    }
+  };
+  // With all of the halo.
+  const int high = Lattice::kHighHalo;
+#pragma omp parallel for schedule(static, kPlanesInTurn)
+  for (int k = -low; k < l.n[2] + high; ++k) {
+    for (int j = -low; j < l.n[1] + high; ++j) {
+      if (isWanted(j, k)) findRow(l.planeBegin(k) + stride * (j + low));
     }
   }
 }

@@ -236,7 +236,7 @@ void FreeSurface::redistance() {
     const double settled = (pass - 1) / std::sqrt(3.0);
     fillHalo(l, next);
     const RowRanges before = ranges;
-#pragma omp parallel for schedule(dynamic)
+#pragma omp parallel for schedule(static, kPlanesInTurn)
     for (int k = 0; k < l.n[2]; ++k) {
       for (int j = 0; j < l.n[1]; ++j) {
         // Rows that the surface has not reached yet, or in which all is settled.

@@ -10,18 +10,36 @@ namespace monolith {
 
 constexpr std::ptrdiff_t kSumBlock = 4096;
 
-// f(begin, end) -> Sum, for consecutive ranges of [0, size).
+// Parts of a long array, each for one thread: those that hold unknowns, in the order in which threads share them.
+struct Part {
+  std::ptrdiff_t begin, end;
+};
+using Parts = std::vector<Part>;
+
+// Cuts [begin, end) into equal parts, no longer than the blocks of sums.
+inline void appendParts(std::ptrdiff_t begin, std::ptrdiff_t end, Parts& parts) {
+  const std::ptrdiff_t size = end - begin, count = (size + kSumBlock - 1) / kSumBlock;
+  for (std::ptrdiff_t p = 0; p < count; ++p)
+    parts.push_back({begin + size * p / count, begin + size * (p + 1) / count});
+}
+
+// f(begin, end) -> Sum
 template <class Sum, class BlockFunction>
-Sum blockedSum(std::ptrdiff_t size, BlockFunction&& f) {
-  const std::ptrdiff_t blocks = (size + kSumBlock - 1) / kSumBlock;
-  std::vector<Sum> sums(blocks);
+Sum blockedSum(const Parts& parts, BlockFunction&& f) {
+  std::vector<Sum> sums(parts.size());
 #pragma omp parallel for schedule(static)
-  for (std::ptrdiff_t b = 0; b < blocks; ++b) {
-    sums[b] = f(b * kSumBlock, std::min(size, (b + 1) * kSumBlock));
-  }
+  for (std::size_t p = 0; p < parts.size(); ++p) sums[p] = f(parts[p].begin, parts[p].end);
   Sum total{};
   for (const Sum& sum : sums) total += sum;
   return total;
+}
+
+// The same for all of [0, size).
+template <class Sum, class BlockFunction>
+Sum blockedSum(std::ptrdiff_t size, BlockFunction&& f) {
+  Parts parts;
+  appendParts(0, size, parts);
+  return blockedSum<Sum>(parts, f);
 }
 
 // Loops over long arrays take plain pointers, not what a lambda has captured: GCC 12 would gather the array's address

@@ -24,6 +24,12 @@ constexpr double kPoorCycle = 0.1;
 // The estimate of a cycle may be a little off: aim lower than the goal.
 constexpr double kMargin = 0.9;
 
+std::size_t entries(const Parts& parts) {
+  std::size_t sum = 0;
+  for (const Part& part : parts) sum += static_cast<std::size_t>(part.end - part.begin);
+  return sum;
+}
+
 // a.c, b.c, a.d, b.d at once: one sum alone would wait for its own additions.
 template <class Real>
 std::array<double, 4> fourProducts(const Real* a, const Real* b, const Real* c, const Real* d, std::ptrdiff_t size) {
@@ -49,15 +55,14 @@ std::array<double, 4> fourProducts(const Real* a, const Real* b, const Real* c, 
 // Products of w and of the newest vector of the basis with all of it. One number and 4 flops an entry and vector, bound
 // by memory; the blocks of w and of the newest stay in the first cache.
 template <class Real>
-void multiply(const std::vector<std::vector<Real>>& basis, int count, const std::vector<Real>& w,
+void multiply(const Parts& parts, const std::vector<std::vector<Real>>& basis, int count, const std::vector<Real>& w,
               Eigen::VectorXd& with_w, Eigen::VectorXd& with_newest) {
-  const auto size = static_cast<std::ptrdiff_t>(w.size());
-  const std::ptrdiff_t blocks = (size + kSumBlock - 1) / kSumBlock;
+  const auto blocks = static_cast<std::ptrdiff_t>(parts.size());
   Eigen::MatrixXd sums(2 * count, blocks);
-  countWork(w.size(), 4.0 * count, sizeof(Real) * (count + 1.0));
+  countWork(entries(parts), 4.0 * count, sizeof(Real) * (count + 1.0));
 #pragma omp parallel for schedule(static)
   for (std::ptrdiff_t b = 0; b < blocks; ++b) {
-    const std::ptrdiff_t begin = b * kSumBlock, length = std::min(size - begin, kSumBlock);
+    const std::ptrdiff_t begin = parts[b].begin, length = parts[b].end - begin;
     const Real *newest = basis[count - 1].data() + begin, *last = w.data() + begin;
     for (int i = 0; i < count; i += 2) {
       const int next = std::min(i + 1, count - 1);
@@ -77,10 +82,11 @@ void multiply(const std::vector<std::vector<Real>>& basis, int count, const std:
 
 // w -= sum_i h[i] v_i; returns |w|^2. One number and 2 flops an entry and vector, bound by memory.
 template <class Real>
-double subtract(const std::vector<std::vector<Real>>& basis, const Eigen::VectorXd& h, std::vector<Real>& w) {
+double subtract(const Parts& parts, const std::vector<std::vector<Real>>& basis, const Eigen::VectorXd& h,
+                std::vector<Real>& w) {
   const auto count = static_cast<double>(h.size());
-  countWork(w.size(), 2.0 * count + 2.0, sizeof(Real) * (count + 2.0));
-  return blockedSum<double>(w.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+  countWork(entries(parts), 2.0 * count + 2.0, sizeof(Real) * (count + 2.0));
+  return blockedSum<double>(parts, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     Real* to = w.data();
     for (Eigen::Index i = 0; i < h.size(); i += 2) {
       const bool pair = i + 1 < h.size();
@@ -107,13 +113,13 @@ double subtractFrom(const double* b, double* y, std::ptrdiff_t size) {
 
 // x += sum_v coefficient[v] z[v]
 template <class Real>
-void combine(const std::vector<std::vector<Real>>& z, const Eigen::VectorXd& coefficient, std::vector<double>& x) {
-  const auto size = static_cast<std::ptrdiff_t>(x.size());
+void combine(const Parts& parts, const std::vector<std::vector<Real>>& z, const Eigen::VectorXd& coefficient,
+             std::vector<double>& x) {
   const auto count = static_cast<double>(coefficient.size());
-  countWork(x.size(), 2.0 * count, sizeof(Real) * count + 2.0 * sizeof(double));
+  countWork(entries(parts), 2.0 * count, sizeof(Real) * count + 2.0 * sizeof(double));
 #pragma omp parallel for schedule(static)
-  for (std::ptrdiff_t begin = 0; begin < size; begin += kSumBlock) {
-    const auto end = std::min(size, begin + kSumBlock);
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const auto [begin, end] = parts[p];
     for (int v = 0; v < coefficient.size(); ++v) {
       const Real* q = z[v].data();
       const double a = coefficient[v];
@@ -124,11 +130,16 @@ void combine(const std::vector<std::vector<Real>>& z, const Eigen::VectorXd& coe
 }
 
 template <class From, class To>
-void scaleInto(const std::vector<From>& x, double a, std::vector<To>& y) {
+void scaleInto(const Parts& parts, const std::vector<From>& x, double a, std::vector<To>& y) {
   y.resize(x.size());
-  countWork(x.size(), 1.0, sizeof(From) + sizeof(To));
-#pragma omp parallel for simd schedule(static)
-  for (std::size_t i = 0; i < x.size(); ++i) y[i] = static_cast<To>(a * x[i]);
+  countWork(entries(parts), 1.0, sizeof(From) + sizeof(To));
+#pragma omp parallel for schedule(static)
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const From* from = x.data();
+    To* to = y.data();
+#pragma omp simd
+    for (std::ptrdiff_t i = parts[p].begin; i < parts[p].end; ++i) to[i] = static_cast<To>(a * from[i]);
+  }
 }
 
 }  // namespace
@@ -167,28 +178,41 @@ void Fgmres::lose(const std::vector<std::ptrdiff_t>& begins, int length) {
 
 const std::vector<float>& Fgmres::firstDirection(const KrylovMaps& maps, const std::vector<double>& b,
                                                  std::vector<double>& x) {
+  divide(maps, b.size());
   work_.resize(b.size(), 0.0);
   residual(maps, b, x);
   std::vector<float>& r = single_.basisRoom(0, b.size());
   std::vector<float>& z = single_.directionRoom(0, b.size());
-  scaleInto(work_, 1.0, r);
+  scaleInto(parts_, work_, 1.0, r);
   maps.precondition(r, z);
   return z;
 }
 
 double Fgmres::residual(const KrylovMaps& maps, const std::vector<double>& b, std::vector<double>& x) {
   maps.apply(x, work_);
-  countWork(b.size(), 3.0, 3.0 * sizeof(double));
-  return std::sqrt(blockedSum<double>(b.size(), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+  countWork(entries(parts_), 3.0, 3.0 * sizeof(double));
+  return std::sqrt(blockedSum<double>(parts_, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     return subtractFrom(b.data() + begin, work_.data() + begin, end - begin);
+  }));
+}
+
+void Fgmres::divide(const KrylovMaps& maps, std::size_t size) {
+  parts_ = maps.parts;
+  const auto end = static_cast<std::ptrdiff_t>(size);
+  appendParts(parts_.empty() ? 0 : static_cast<std::ptrdiff_t>(maps.rest), end, parts_);
+}
+
+double Fgmres::norm(const std::vector<double>& x) const {
+  countWork(entries(parts_), 2.0, sizeof(double));
+  return std::sqrt(blockedSum<double>(parts_, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    return sumOfProducts(x.data() + begin, x.data() + begin, end - begin);
   }));
 }
 
 double Fgmres::completedResidual(const KrylovMaps& maps, const std::vector<double>& b, const std::vector<double>& x) {
   maps.apply_rest(x, work_);
   for (std::size_t i = maps.rest; i < b.size(); ++i) work_[i] = b[i] - work_[i];
-  countWork(b.size(), 2.0, sizeof(double));
-  return std::sqrt(dot(work_, work_));
+  return norm(work_);
 }
 
 void Fgmres::extend(const KrylovMaps& maps, bool known, std::vector<float>& v, std::vector<float>& z,
@@ -204,10 +228,10 @@ void Fgmres::extend(const KrylovMaps& maps, bool known, std::vector<float>& v, s
 // firstDirection() is in single precision.
 void Fgmres::extend(const KrylovMaps& maps, bool, std::vector<double>& v, std::vector<double>& z,
                     std::vector<double>& w) {
-  scaleInto(v, 1.0, v_single_);
+  scaleInto(parts_, v, 1.0, v_single_);
   z_single_.resize(v.size(), 0.0f);
   maps.precondition(v_single_, z_single_);
-  scaleInto(z_single_, 1.0, z);
+  scaleInto(parts_, z_single_, 1.0, z);
   maps.apply(z, w);
 }
 
@@ -221,7 +245,7 @@ int Fgmres::cycle(const KrylovMaps& maps, double norm, double goal, int most, bo
   std::vector<Eigen::JacobiRotation<double>> rotations(most);
   rhs[0] = 1.0;
   const std::size_t size = work_.size();
-  scaleInto(work_, 1.0 / norm, space.basisRoom(0, size));
+  scaleInto(parts_, work_, 1.0 / norm, space.basisRoom(0, size));
   std::vector<double> estimates(kPatience, 1.0);
   int used = 0;
   bool stop = false;
@@ -230,15 +254,15 @@ int Fgmres::cycle(const KrylovMaps& maps, double norm, double goal, int most, bo
     std::vector<Real>& w = space.basisRoom(j + 1, size);
     std::vector<Real>& z = space.directionRoom(j, size);
     const bool known = first_known && j == 0;
-    if (known) scaleInto(z, 1.0 / norm, z);
+    if (known) scaleInto(parts_, z, 1.0 / norm, z);
     extend(maps, known, space.basis[j], z, w);
     // Modified Gram-Schmidt, whose coefficients are h = (I + L)^-1 V^T w with L the strictly lower part of V^T V
     // (Swirydowicz et al. 2021, Numer. Linear Algebra Appl. 28, e2343): it reads the basis twice, not four times.
     Eigen::VectorXd h, row;
-    multiply(space.basis, j + 1, w, h, row);
+    multiply(parts_, space.basis, j + 1, w, h, row);
     gram.row(j).head(j + 1) = row;
     gram.topLeftCorner(j + 1, j + 1).template triangularView<Eigen::UnitLower>().solveInPlace(h);
-    const double length = std::sqrt(subtract(space.basis, h, w));
+    const double length = std::sqrt(subtract(parts_, space.basis, h, w));
     hessenberg.col(j).head(j + 1) = h;
     hessenberg(j + 1, j) = length;
     for (int i = 0; i < j; ++i) hessenberg.col(j).applyOnTheLeft(i, i + 1, rotations[i].adjoint());
@@ -250,21 +274,22 @@ int Fgmres::cycle(const KrylovMaps& maps, double norm, double goal, int most, bo
     estimates.push_back(estimate);
     const bool stuck = single && estimate < kFloor && estimate > 0.95 * estimates[estimates.size() - 1 - kPatience];
     stop = estimate <= goal || stuck || !(length > 0.0) || !std::isfinite(estimate);
-    if (length > 0.0) scaleInto(w, 1.0 / length, w);
+    if (length > 0.0) scaleInto(parts_, w, 1.0 / length, w);
   }
   const Eigen::VectorXd y =
       norm * hessenberg.topLeftCorner(used, used).triangularView<Eigen::Upper>().solve(rhs.head(used));
-  if (y.allFinite()) combine(space.directions, y, x);
+  if (y.allFinite()) combine(parts_, space.directions, y, x);
   return used;
 }
 
 KrylovReport Fgmres::solve(const KrylovMaps& maps, const std::vector<double>& b, std::vector<double>& x,
                            const KrylovOptions& options, KrylovPast past) {
   KrylovReport report;
+  divide(maps, b.size());
   work_.resize(b.size(), 0.0);
   bool first_known = past == KrylovPast::kDirection;
   report.residual = past == KrylovPast::kNothing ? residual(maps, b, x) : completedResidual(maps, b, x);
-  const double none = std::sqrt(dot(b, b));
+  const double none = norm(b);
   if (report.residual > none) {
     // A guess that is worse than none: what it left wrong, where viscosities have changed by orders of magnitude, would
     // have to be taken back first.

@@ -10,6 +10,8 @@
 #include <functional>
 #include <vector>
 
+#include "solve/blocked_sum.h"
+
 namespace monolith {
 
 struct KrylovOptions {
@@ -38,6 +40,8 @@ struct KrylovMaps {
   // Where solve() is told to go on from the call before. Entries from `rest` on are those in which the right side, and
   // of which the guess, may have changed since; the others of A x do not depend on them. May be missing.
   std::size_t rest = 0;
+  // All entries before `rest` that may be unknowns; none: every entry.
+  Parts parts;
   std::function<void(const std::vector<double>& x, std::vector<double>& y)> apply_rest;  // these entries of A x
   std::function<void(const std::vector<float>& x, std::vector<float>& y)> complete;      // these entries of P^-1 x
 };
@@ -81,6 +85,9 @@ class Fgmres {
                                    std::size_t size);
   };
 
+  // How threads share vectors of this length.
+  void divide(const KrylovMaps& maps, std::size_t size);
+  double norm(const std::vector<double>& x) const;
   double residual(const KrylovMaps& maps, const std::vector<double>& b, std::vector<double>& x);
   // The same where work_ holds all of it but the rest.
   double completedResidual(const KrylovMaps& maps, const std::vector<double>& b, const std::vector<double>& x);
@@ -96,6 +103,7 @@ class Fgmres {
 
   Space<float> single_;
   Space<double> double_;  // empty unless it was needed
+  Parts parts_;
   std::vector<double> work_;  // the residual of the last call
   std::vector<float> v_single_, z_single_;
 };
