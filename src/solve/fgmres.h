@@ -41,9 +41,9 @@ struct KrylovMaps {
   // of which the guess, may have changed since; the others of A x do not depend on them. May be missing.
   std::size_t rest = 0;
   // All entries before `rest` that may be unknowns; none: every entry.
-  Parts parts;
-  std::function<void(const std::vector<double>& x, std::vector<double>& y)> apply_rest;  // these entries of A x
-  std::function<void(const std::vector<float>& x, std::vector<float>& y)> complete;      // these entries of P^-1 x
+  Parts parts{};
+  std::function<void(const std::vector<double>& x, std::vector<double>& y)> apply_rest{};  // these entries of A x
+  std::function<void(const std::vector<float>& x, std::vector<float>& y)> complete{};      // these entries of P^-1 x
 };
 
 // What the last call, with the same maps, has left for solve().

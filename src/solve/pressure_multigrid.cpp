@@ -287,12 +287,13 @@ void PressureMultigrid::residual(Level& level, float* r) const {
   countWork(level.blocks.lanes(), kNetworkFlops + 1.0, 3.0 * sizeof(float));
   const float *x = level.x.data(), *b = level.right, *mask = level.mask.data();
   if (level.partial) {
-    // Away from its blocks x is zero.
+    // Away from its blocks x is zero. Coarse cells reach a plane farther, where there may have been liquid before.
     const Lattice& l = level.lattice;
     const std::ptrdiff_t size = l.stride[2];
-    countWork(static_cast<std::size_t>(size * (level.planes.end - level.planes.first)), 0.0, 3.0 * sizeof(float));
+    const int first = std::max(0, level.planes.first - 1), last = std::min(l.n[2], level.planes.end + 1);
+    countWork(static_cast<std::size_t>(size * (last - first)), 0.0, 3.0 * sizeof(float));
 #pragma omp parallel for schedule(static)
-    for (int k = level.planes.first; k < level.planes.end; ++k) {
+    for (int k = first; k < last; ++k) {
       const std::ptrdiff_t begin = l.planeBegin(k);
 #pragma omp simd
       for (std::ptrdiff_t i = begin; i < begin + size; ++i) r[i] = mask[i] > 0.0f ? b[i] : 0.0f;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <limits>
 #include <random>
 
 namespace monolith {
@@ -140,6 +141,39 @@ TEST_F(FgmresTest, StaysOrthogonalInSinglePrecision) {
   const KrylovReport report = Fgmres().solve(maps(), rhs, x, options);
   EXPECT_TRUE(report.converged);
   EXPECT_LE(report.iterations, 121);
+}
+
+// Between the parts that may hold unknowns nobody looks.
+TEST_F(FgmresTest, LooksAtTheGivenPartsOnly) {
+  KrylovOptions options;
+  options.absolute_tolerance = 1e-8;
+  options.maximum_iterations = 2000;
+  options.shortest_cycle = options.longest_cycle = 130;
+  const auto n = static_cast<std::ptrdiff_t>(rhs.size()), half = n / 2;
+  std::vector<double> x(rhs.size(), 0.0);
+  const KrylovReport whole = Fgmres().solve(maps(), rhs, x, options);
+  // The first half lies 100 entries on, the second at the end.
+  constexpr std::ptrdiff_t kBefore = 100, kBetween = 6000;
+  const auto place = [&](std::ptrdiff_t i) { return i < half ? kBefore + i : kBetween + i; };
+  const auto times = [&](const auto& from, auto& to) {
+    for (std::ptrdiff_t i = 0; i < n; ++i) {
+      double sum = 0.0;
+      for (std::ptrdiff_t j = 0; j < n; ++j) sum += matrix(i, j) * from[place(j)];
+      to[place(i)] = static_cast<typename std::decay_t<decltype(to)>::value_type>(sum);
+    }
+  };
+  KrylovMaps apart{times, times, [&](auto& from, auto& to) {
+                     for (std::ptrdiff_t i = 0; i < n; ++i) to[place(i)] = from[place(i)];
+                   }};
+  apart.rest = kBetween + half;
+  appendParts(kBefore, kBefore + half, apart.parts);
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> b(kBetween + n, none), found(b.size(), none);
+  for (std::ptrdiff_t i = 0; i < n; ++i) b[place(i)] = rhs[i], found[place(i)] = 0.0;
+  const KrylovReport report = Fgmres().solve(apart, b, found, options);
+  EXPECT_TRUE(report.converged);
+  EXPECT_NEAR(report.iterations, whole.iterations, 0.1 * whole.iterations);
+  for (std::ptrdiff_t i = 0; i < n; ++i) EXPECT_NEAR(found[place(i)], x[i], 1e-7);
 }
 
 // A surface has moved: what was an unknown of the last solve is none now, and nobody writes it any more.
