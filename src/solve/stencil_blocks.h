@@ -191,9 +191,8 @@ class StencilBlocks {
   bool anew_ = true;  // the last build was the first on its lattice
   long build_ = 0;
   std::vector<Lost> lost_;  // blocks that the build before had
-  // Of use within a build only, kept for their memory.
-  Last last_;
-  std::vector<Plane> planes_;
+  Last last_;                  // within a build only
+  std::vector<Plane> planes_;  // likewise, kept for their memory
 };
 
 template <class Real, int Count>
@@ -214,6 +213,7 @@ void StencilBlocks<Real, Count>::build(const Lattice& l, const std::vector<int>&
   for (int k = 0; k < l.faceEnd(2); ++k) buildPlane(k, first, fill, keeps ? steady : nullptr, planes_[k]);
   merge(components);
   findLost(components);
+  last_ = Last();
 }
 
 template <class Real, int Count>
