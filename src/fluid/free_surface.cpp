@@ -21,20 +21,19 @@ constexpr double kBand = 6.0;
 constexpr double kLongestWay = kBand - 1.0;  // cells in one advection, kTravelToRedistance being undone before the next
 constexpr double kSampleBeyondSolid = 0.75;  // cells: outside, where the value is the liquid's own
 
-// Solution of the discrete eikonal equation at a cell from its nearest neighbours along each axis; without branches,
-// for the vector units.
-inline double eikonal(double a, double b, double c) {
-  const double low = std::min(a, b), high = std::max(a, b);
-  const double first = std::min(low, c), third = std::max(high, c);
-  const double second = std::max(low, std::min(high, c));
-  const double apart = first - second;
-  const double sum = first + second + third;
-  const double squares = first * first + second * second + third * third;
-  const double one = first + 1.0;
-  const double two = 0.5 * (first + second + std::sqrt(std::max(0.0, 2.0 - apart * apart)));
-  const double three = (sum + std::sqrt(std::max(0.0, sum * sum - 3.0 * (squares - 1.0)))) / 3.0;
-  const double not_one = two > third ? three : two;
-  return one > second ? not_one : one;
+// Solution of the discrete eikonal equation at a cell from its nearest neighbours along each axis.
+double eikonal(std::array<double, 3> d) {
+  std::sort(d.begin(), d.end());
+  double x = d[0] + 1.0;
+  if (x > d[1]) {
+    x = 0.5 * (d[0] + d[1] + std::sqrt(std::max(0.0, 2.0 - (d[0] - d[1]) * (d[0] - d[1]))));
+    if (x > d[2]) {
+      const double sum = d[0] + d[1] + d[2];
+      const double squares = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+      x = (sum + std::sqrt(std::max(0.0, sum * sum - 3.0 * (squares - 1.0)))) / 3.0;
+    }
+  }
+  return x;
 }
 
 // Of a row of cells.
@@ -43,27 +42,18 @@ struct Range {
 };
 
 // Half a pass over a row of cells: those of one colour, every other one from `first` on, that are neither fixed nor
-// settled. Reads the other colour only.
+// settled. Around the row it reads the other colour only, which other threads do not write meanwhile.
 Range relaxRow(const Lattice& l, std::ptrdiff_t row, int first, const std::uint8_t* fixed, double settled,
                std::vector<double>& field) {
   const int width = l.n[0];
-  thread_local std::vector<double> wide;
-  wide.resize(width);
-  double* out = wide.data();
   double* d = field.data() + row;
-  const std::uint8_t* stays = fixed + row;
-  const auto sy = l.stride[1], sz = l.stride[2];
-  // Of values, not of references as std::min: those are not loaded by vectors.
-  const auto lesser = [](double a, double b) { return a < b ? a : b; };
-#pragma omp simd
-  for (int i = 0; i < width; ++i) {
-    const double at = d[i], x = lesser(d[i - 1], d[i + 1]), y = lesser(d[i - sy], d[i + sy]),
-                 z = lesser(d[i - sz], d[i + sz]);
-    const double solved = lesser(at, eikonal(x, y, z));
-    const bool changes = (lesser(lesser(x, y), z) < kBand) & (at > settled) & (stays[i] == 0);
-    out[i] = changes ? solved : at;
+  for (int i = first; i < width; i += 2) {
+    if (fixed[row + i] || d[i] <= settled) continue;
+    std::array<double, 3> nearest;
+    for (int a = 0; a < 3; ++a) nearest[a] = std::min(d[i - l.stride[a]], d[i + l.stride[a]]);
+    if (std::min({nearest[0], nearest[1], nearest[2]}) >= kBand) continue;
+    d[i] = std::min(d[i], eikonal(nearest));
   }
-  for (int i = first; i < width; i += 2) d[i] = out[i];
   double least = kFar, most = 0.0;
 #pragma omp simd reduction(min : least) reduction(max : most)
   for (int i = 0; i < width; ++i) {

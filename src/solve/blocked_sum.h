@@ -1,6 +1,6 @@
 #pragma once
-// Sums over long arrays that give the same bits at any thread count: blocks of fixed length, each summed by one
-// thread, block sums added in order.
+// Sums over long arrays that give the same bits at any thread count: parts that do not depend on it, each summed by one
+// thread, their sums added in order.
 
 #include <algorithm>
 #include <cstddef>

@@ -158,6 +158,7 @@ void Fgmres::forget() {
   single_.clean_basis = single_.clean_directions = 0;
   double_.clean_basis = double_.clean_directions = 0;
   work_.clear();
+  v_single_.clear();
   z_single_.clear();
 }
 
@@ -173,6 +174,7 @@ void Fgmres::lose(const std::vector<std::ptrdiff_t>& begins, int length) {
   clearAll(single_);
   clearAll(double_);
   clear(work_);
+  clear(v_single_);
   clear(z_single_);
 }
 

@@ -51,9 +51,8 @@ struct Lattice {
   long cells() const { return static_cast<long>(n[0]) * n[1] * n[2]; }
 };
 
-// Planes of cells or faces, k from `first` to before `end`: those that hold all unknowns. Loops over them in equal
-// parts give each thread what it has of stencils (stencil_blocks.h), which stays in its cache; beyond them fields are
-// zero.
+// Planes of cells or faces, k from `first` to before `end`: those that hold all unknowns, beyond which nobody looks.
+// Loops over them in equal parts give each thread what it has of stencils (stencil_blocks.h), which stays in its cache.
 struct Planes {
   int first = 0, end = 0;
 };
