@@ -33,7 +33,7 @@ class Collector {
   void addCell(std::ptrdiff_t cell, int body, const Vector6d& coefficient) {
     add(3 * static_cast<std::ptrdiff_t>(lattice_.size) + cell, body, coefficient);
   }
-  std::vector<Sum>& sums() { return sums_; }
+  std::vector<Sum> take() { return std::move(sums_); }
 
  private:
   void add(std::ptrdiff_t place, int body, const Vector6d& coefficient) {
@@ -69,7 +69,7 @@ std::vector<Sum> collectCells(const StepProblem& p) {
   for (const BodyRow& row : p.rows.divergence) {
     if (p.free_index[row.body] >= 0) collector.addCell(row.sample, p.free_index[row.body], -row.coefficient);
   }
-  return std::move(collector.sums());
+  return collector.take();
 }
 
 // Of the faces of one axis: A_uv.
@@ -104,7 +104,7 @@ std::vector<Sum> collectFaces(const StepProblem& p, int axis) {
     const int body = p.free_index[row.body];
     if (body >= 0) collector.addFace(axis, row.sample, body, -c.drag[axis][row.sample] * row.coefficient);
   }
-  return std::move(collector.sums());
+  return collector.take();
 }
 
 // A_vv

@@ -1,6 +1,5 @@
 #include "coupling/body_rows.h"
 
-#include <type_traits>
 #include <utility>
 
 namespace monolith {
@@ -13,24 +12,21 @@ Vector6d velocityRow(int axis, const Eigen::Vector3d& x, const Eigen::Vector3d& 
 }
 
 void appendRows(const std::vector<BodyRows>& parts, BodyRows& out) {
-  using List = std::vector<BodyRow>;
-  const auto lists = [](auto& rows) {
-    using Rows = std::remove_reference_t<decltype(rows)>;
-    std::vector<std::conditional_t<std::is_const_v<Rows>, const List*, List*>> all{&rows.divergence, &rows.enclosed};
-    for (auto* kind : {&rows.normal, &rows.shear, &rows.drag}) {
-      for (auto& list : *kind) all.push_back(&list);
-    }
-    return all;
+  constexpr int kLists = 11;
+  const auto list = [](auto& rows, int i) -> auto& {
+    return i == 0   ? rows.divergence
+           : i == 1 ? rows.enclosed
+           : i < 5  ? rows.normal[i - 2]
+           : i < 8  ? rows.shear[i - 5]
+                    : rows.drag[i - 8];
   };
-  std::vector<std::vector<const List*>> from;
-  for (const BodyRows& part : parts) from.push_back(lists(part));
-  const std::vector<List*> to = lists(out);
 #pragma omp parallel for schedule(dynamic)
-  for (std::size_t i = 0; i < to.size(); ++i) {
-    std::size_t size = to[i]->size();
-    for (const auto& part : from) size += part[i]->size();
-    to[i]->reserve(size);
-    for (const auto& part : from) to[i]->insert(to[i]->end(), part[i]->begin(), part[i]->end());
+  for (int i = 0; i < kLists; ++i) {
+    std::vector<BodyRow>& to = list(out, i);
+    std::size_t size = to.size();
+    for (const BodyRows& part : parts) size += list(part, i).size();
+    to.reserve(size);
+    for (const BodyRows& part : parts) to.insert(to.end(), list(part, i).begin(), list(part, i).end());
   }
 }
 

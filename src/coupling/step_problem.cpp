@@ -51,7 +51,6 @@ void StepProblem::assemble(SolidFractions& solids, const std::vector<RigidBody>&
   twist_scale.clear();
   radius.clear();
   inertia.clear();
-  solid_inertia.clear();
   for (std::size_t b = 0; b < all_bodies.size(); ++b) {
     if (all_bodies[b].motion != BodyMotion::kFree) continue;
     moves[b] = 1;
@@ -62,7 +61,6 @@ void StepProblem::assemble(SolidFractions& solids, const std::vector<RigidBody>&
     M.bottomRightCorner<3, 3>() = all_bodies[b].worldInertia();
     M /= impulse_scale;
     inertia.push_back(M + stuck_inertia[b]);
-    solid_inertia.push_back(M);
     // A light body moves with the liquid that it displaces: that is its scale then.
     double displaced = 0.0;
     for (const double part : solids.bodies[b].cell) displaced += part;
@@ -195,7 +193,7 @@ std::string StepProblem::rightSide(FaceField<double> free_velocity, const std::v
   clearHalo(l, rhs.pressure);
   for (std::size_t i = 0; i < free.size(); ++i) {
     const std::size_t b = free[i];
-    rhs.bodies[b] += solid_inertia[i] * free_twists[b] + stuck_inertia[b] * stickingTwist(b, gravity);
+    rhs.bodies[b] += inertia[i] * free_twists[b] + stuck_inertia[b] * (stickingTwist(b, gravity) - free_twists[b]);
   }
   for (const EnclosedWeight& weight : enclosed) rhs.bodies[weight.body] += enclosedImpulse(weight, gravity);
   for (std::size_t b = 0; b < bodies->size(); ++b) {

@@ -97,7 +97,6 @@ class StepProblem {
   std::vector<Vector6d> twist_scale;     // of free bodies: sqrt of the inertia that they feel, liquid included
   std::vector<double> radius;            // of free bodies, cells: of a sphere that displaces as much
   std::vector<Matrix6d> inertia;         // M^ of free bodies with the liquid that sticks to them
-  std::vector<Matrix6d> solid_inertia;   // M^ of free bodies by themselves
   std::vector<Matrix6d> stuck_inertia;   // M^ of the liquid that sticks to each body, free or not
   std::vector<EnclosedWeight> enclosed;  // in contacts, which liquid reaches from their rim
 
@@ -112,7 +111,7 @@ class StepProblem {
   std::string balanceSealedRegions(std::vector<double>& flux) const;
 
   FaceKinds kinds_;                                    // `fitted`, with viscosity
-  std::array<std::vector<std::uint8_t>, 3> resolved_;  // empty: every face with an unknown
+  FaceMask resolved_;                                  // empty: every face with an unknown
   FaceField<double> liquid_mass_;                      // empty: the coefficients'
   mutable StepOperator op_;
 };

@@ -158,7 +158,7 @@ Eigen::Vector3d velocityAt(const Lattice& l, const FaceField<double>& velocity, 
   return sampleVelocity(l, velocity, position);
 }
 
-void extrapolateVelocity(const Lattice& l, int layers, bool no_slip, std::array<std::vector<std::uint8_t>, 3>& known,
+void extrapolateVelocity(const Lattice& l, int layers, bool no_slip, FaceMask& known,
                          const std::vector<FaceField<double>*>& fields) {
   // One list for each plane of faces of each axis, so that threads do not meet.
   const int planes = l.faceEnd(2);
@@ -221,8 +221,8 @@ double advectCell(const Lattice& l, const FaceField<double>& velocity, const std
   return sampleCubic(l, field, traceBack(l, velocity, x, v, scale) - offset, false);
 }
 
-void advectVelocity(const MacGrid& grid, const FaceField<double>& velocity,
-                    const std::array<std::vector<std::uint8_t>, 3>& known, double dt, FaceField<double>& moved) {
+void advectVelocity(const MacGrid& grid, const FaceField<double>& velocity, const FaceMask& known, double dt,
+                    FaceField<double>& moved) {
   const Lattice& l = grid.lattice;
   const double scale = dt / grid.h;
   for (int a = 0; a < 3; ++a) {
@@ -237,8 +237,8 @@ void advectVelocity(const MacGrid& grid, const FaceField<double>& velocity,
 }
 
 void advectAccelerated(const MacGrid& grid, const FaceField<double>& velocity, const FaceField<double>& acceleration,
-                       const std::array<std::vector<std::uint8_t>, 3>& known, double dt, FaceField<double>& moved,
-                       FaceField<double>& gained, FaceField<double>& mean) {
+                       const FaceMask& known, double dt, FaceField<double>& moved, FaceField<double>& gained,
+                       FaceField<double>& mean) {
   const Lattice& l = grid.lattice;
   for (int a = 0; a < 3; ++a) {
     mean[a].resize(l.size);

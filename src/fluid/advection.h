@@ -13,8 +13,7 @@ namespace monolith {
 // Spreads velocities, or their rates, from faces where known[a] is set to those within `layers` of them (mean of the
 // known neighbours), marking these known, and into the halo: odd across a wall for the normal component and, with no
 // slip, for the tangential ones; even otherwise.
-void extrapolateVelocity(const Lattice& lattice, int layers, bool no_slip,
-                         std::array<std::vector<std::uint8_t>, 3>& known,
+void extrapolateVelocity(const Lattice& lattice, int layers, bool no_slip, FaceMask& known,
                          const std::vector<FaceField<double>*>& fields);
 
 // The velocity at the foot of the trajectory that arrives at a face; scale: dt/h. Halos must be filled.
@@ -27,14 +26,14 @@ double advectCell(const Lattice& lattice, const FaceField<double>& velocity, con
 
 // The velocity field moved by itself over dt, on faces of the tank that are known, those in walls excepted; zero
 // elsewhere. Halos must be filled.
-void advectVelocity(const MacGrid& grid, const FaceField<double>& velocity,
-                    const std::array<std::vector<std::uint8_t>, 3>& known, double dt, FaceField<double>& moved);
+void advectVelocity(const MacGrid& grid, const FaceField<double>& velocity, const FaceMask& known, double dt,
+                    FaceField<double>& moved);
 
 // The same with trajectories of second order in time: with the acceleration a of the liquid's particles they are
 // x = x_d + dt u(x_d) + dt^2/2 a(x_d). moved: u(x_d); gained: a(x_d), trilinear; mean: work space.
 void advectAccelerated(const MacGrid& grid, const FaceField<double>& velocity, const FaceField<double>& acceleration,
-                       const std::array<std::vector<std::uint8_t>, 3>& known, double dt, FaceField<double>& moved,
-                       FaceField<double>& gained, FaceField<double>& mean);
+                       const FaceMask& known, double dt, FaceField<double>& moved, FaceField<double>& gained,
+                       FaceField<double>& mean);
 
 // A cell-centred field moved by the velocity over dt, where its size is less than `band`; elsewhere it stays. Halos must
 // be filled.

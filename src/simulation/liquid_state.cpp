@@ -27,8 +27,8 @@ void continueIntoAir(const Lattice& l, const SolidFractions& solids, const std::
     for (int k = 0; k < l.faceEnd(2); ++k) {
       forEachNextToKnown(l, k, before.data(), [&](std::ptrdiff_t f, const std::array<int, 3>& at) {
         if (!(solids.distance[a][f] > 0.0 && solids.fluid[a][f] > 0.0)) return;
-        std::array<std::pair<std::ptrdiff_t, std::ptrdiff_t>, 6>
-            slopes;  // from the face that is far to the one that is near
+        // Each from the face that is far to the one that is near.
+        std::array<std::pair<std::ptrdiff_t, std::ptrdiff_t>, 6> slopes;
         int count = 0;
         for (int b = 0; b < 3; ++b) {
           for (const int step : {-1, 1}) {

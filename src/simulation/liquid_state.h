@@ -20,8 +20,6 @@ void setVelocity(const MacGrid& grid, const std::function<Eigen::Vector3d(const 
 // Norm of the largest components of a velocity at faces: no point of the liquid is faster.
 double largestSpeed(const FaceField<double>& velocity);
 
-using FaceMask = std::array<std::vector<std::uint8_t>, 3>;  // 1 or 0, by axes
-
 // The faces whose velocity the solve tells.
 void markResolved(const StepProblem& problem, FaceMask& mask);
 

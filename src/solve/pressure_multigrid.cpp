@@ -25,11 +25,11 @@ float liftedToAir(float g, bool inside) {
   return inside ? 2.0f * g / (1.0f - 0.5f * std::min(g, kLargestLift)) : 2.0f * g / (1.0f + 0.5f * g);
 }
 
-// Those that hold a cell of kind 1, liquid.
-Planes planesWith(const std::vector<std::uint8_t>& kind, const Lattice& l) {
+// Those that hold a cell of this kind.
+Planes planesWith(std::uint8_t wanted, const std::vector<std::uint8_t>& kind, const Lattice& l) {
   Planes out;
   for (int k = 0; k < l.n[2]; ++k) {
-    if (std::memchr(kind.data() + l.planeBegin(k), 1, static_cast<std::size_t>(l.stride[2])) == nullptr) continue;
+    if (std::memchr(kind.data() + l.planeBegin(k), wanted, static_cast<std::size_t>(l.stride[2])) == nullptr) continue;
     if (out.end == 0) out.first = k;
     out.end = k + 1;
   }
@@ -194,7 +194,7 @@ void PressureMultigrid::finish(const Network& network, const SteadyRows* steady,
   if (&level != &levels_[0]) level.build = -1;
   for (auto* field : {&level.x, &level.next, &level.d}) level.blocks.clear(0, level.build, *field);
   level.build = level.blocks.build();
-  level.planes = planesWith(network.kind, l);
+  level.planes = planesWith(kLiquid, network.kind, l);
   // L is an M-matrix: the spectrum of D^-1 L lies in [0, 2].
   level.range.largest = 2.0f;
   level.range.ratio = kRatio;

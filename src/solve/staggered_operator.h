@@ -23,6 +23,7 @@ constexpr int kShearPairs[3][2] = {{0, 1}, {0, 2}, {1, 2}};
 
 template <class Real>
 using FaceField = std::array<std::vector<Real>, 3>;
+using FaceMask = FaceField<std::uint8_t>;  // 1 or 0
 
 template <class Real>
 struct StaggeredCoefficients {

@@ -79,7 +79,7 @@ class StencilBlocks {
   }
 
   // Those that have blocks.
-  Planes planes() const { return range_; }
+  Planes planes() const { return planes_; }
   std::size_t blocks() const { return blocks_.size(); }
   std::size_t lanes() const { return blocks_.size() * kLanes; }
   std::size_t patterns() const { return values_.size() / (Count * kLanes); }
@@ -95,7 +95,7 @@ class StencilBlocks {
 #pragma omp parallel for simd schedule(static)
     for (Eigen::Index i = 0; i < values_.size(); ++i) out.values_[i] = static_cast<To>(values_[i]);
     out.lattice_ = lattice_;
-    out.range_ = range_;
+    out.planes_ = planes_;
     out.anew_ = anew_;
     out.build_ = build_;
     out.lost_.clear();
@@ -150,10 +150,11 @@ class StencilBlocks {
     std::size_t patterns() const { return values.size() / kSize; }
   };
   template <class FillRow>
-  void buildPlane(int k, const std::vector<int>& first, FillRow&& fill, const SteadyRows* kept, Plane& plane) const;
-  std::int32_t numberPatterns();
-  void merge(int components);
-  void findLost(int components);
+  void buildPlane(int k, const std::vector<int>& first, FillRow&& fill, const SteadyRows* kept, const Last& before,
+                  Plane& plane) const;
+  std::int32_t numberPatterns(std::size_t patterns_before);
+  void merge(int components, std::int32_t patterns);
+  void findLost(int components, const Last& before);
 
   // Some of a pattern's words tell most patterns apart; which are the same is seen from all of them.
   static std::uint64_t hashOf(const Real* pattern) {
@@ -183,16 +184,15 @@ class StencilBlocks {
 
   std::vector<Block> blocks_;            // by planes, within them by components, then by rows
   std::vector<Segment> segments_;        // blocks of one component in one plane
-  Planes range_;
+  Planes planes_;
   Values values_;
   std::vector<std::int32_t> row_begin_;  // in blocks_, of every row; one more at the end
   long generation_ = kNoGeneration;      // of the steady rows that it was built with
   Lattice lattice_;
   bool anew_ = true;  // the last build was the first on its lattice
   long build_ = 0;
-  std::vector<Lost> lost_;  // blocks that the build before had
-  Last last_;                  // within a build only
-  std::vector<Plane> planes_;  // likewise, kept for their memory
+  std::vector<Lost> lost_;       // blocks that the build before had
+  std::vector<Plane> building_;  // planes, of use within a build only, kept for their memory
 };
 
 template <class Real, int Count>
@@ -202,24 +202,21 @@ void StencilBlocks<Real, Count>::build(const Lattice& l, const std::vector<int>&
   const int components = static_cast<int>(first.size());
   anew_ = build_ == 0 || lattice_.n != l.n || lattice_.periodic != l.periodic;
   const bool keeps = !anew_ && wouldKeep(steady);
-  last_.blocks.swap(blocks_);
-  last_.values.swap(values_);
-  last_.row_begin.swap(row_begin_);
+  const Last last{std::move(blocks_), std::move(values_), std::move(row_begin_)};
   lattice_ = l;
   ++build_;
   generation_ = steady != nullptr ? steady->generation() : kNoGeneration;
-  planes_.resize(l.faceEnd(2));
+  building_.resize(l.faceEnd(2));
 #pragma omp parallel for schedule(static, kPlanesInTurn)
-  for (int k = 0; k < l.faceEnd(2); ++k) buildPlane(k, first, fill, keeps ? steady : nullptr, planes_[k]);
-  merge(components);
-  findLost(components);
-  last_ = Last();
+  for (int k = 0; k < l.faceEnd(2); ++k) buildPlane(k, first, fill, keeps ? steady : nullptr, last, building_[k]);
+  merge(components, numberPatterns(last.patterns()));
+  findLost(components, last);
 }
 
 template <class Real, int Count>
 template <class FillRow>
 void StencilBlocks<Real, Count>::buildPlane(int k, const std::vector<int>& first, FillRow&& fill,
-                                            const SteadyRows* kept, Plane& plane) const {
+                                            const SteadyRows* kept, const Last& before, Plane& plane) const {
   const Lattice& l = lattice_;
   const int components = static_cast<int>(first.size());
   const int row_blocks = (l.n[0] + kLanes - 1) / kLanes;
@@ -230,7 +227,7 @@ void StencilBlocks<Real, Count>::buildPlane(int k, const std::vector<int>& first
   for (auto& r : row) r.resize(row_blocks * kLanes);
   std::vector<Real> candidate(kSize);
   // The last build's patterns, in this plane.
-  std::vector<std::int32_t> here(kept != nullptr ? last_.patterns() : 0, -1);
+  std::vector<std::int32_t> here(kept != nullptr ? before.patterns() : 0, -1);
   for (int component = 0; component < components; ++component) {
     std::vector<Block>& blocks = plane.blocks[component];
     std::vector<std::int32_t> above(row_blocks, -1);  // patterns of the row before
@@ -240,10 +237,10 @@ void StencilBlocks<Real, Count>::buildPlane(int k, const std::vector<int>& first
       const auto start = l.index(first[component], j, k);
       if (kept != nullptr && kept->steady(j, k)) {
         const std::size_t at = (static_cast<std::size_t>(k) * components + component) * rows + j;
-        for (auto b = last_.row_begin[at]; b < last_.row_begin[at + 1]; ++b) {
-          const Block& block = last_.blocks[b];
+        for (auto b = before.row_begin[at]; b < before.row_begin[at + 1]; ++b) {
+          const Block& block = before.blocks[b];
           std::int32_t& pattern = here[block.pattern];
-          if (pattern < 0) pattern = plane.add(last_.values.data() + block.pattern * kSize, block.pattern);
+          if (pattern < 0) pattern = plane.add(before.values.data() + block.pattern * kSize, block.pattern);
           above[(block.place - start) / kLanes] = last = pattern;
           blocks.push_back({block.place, pattern});
         }
@@ -274,13 +271,13 @@ void StencilBlocks<Real, Count>::buildPlane(int k, const std::vector<int>& first
 
 // One after the other, so that patterns are numbered the same way on any number of threads. Returns how many there are.
 template <class Real, int Count>
-std::int32_t StencilBlocks<Real, Count>::numberPatterns() {
+std::int32_t StencilBlocks<Real, Count>::numberPatterns(std::size_t patterns_before) {
   std::size_t most = 0;
-  for (const Plane& plane : planes_) most += plane.origin.size();
+  for (const Plane& plane : building_) most += plane.origin.size();
   IndexTable table(most);
-  std::vector<std::int32_t> renumbered(last_.patterns(), -1);
+  std::vector<std::int32_t> renumbered(patterns_before, -1);
   std::vector<std::pair<const Real*, std::uint64_t>> known;
-  for (Plane& plane : planes_) {
+  for (Plane& plane : building_) {
     plane.number.resize(plane.origin.size());
     for (std::size_t p = 0; p < plane.origin.size(); ++p) {
       const std::int32_t origin = plane.origin[p];
@@ -300,35 +297,35 @@ std::int32_t StencilBlocks<Real, Count>::numberPatterns() {
 }
 
 template <class Real, int Count>
-void StencilBlocks<Real, Count>::merge(int components) {
+void StencilBlocks<Real, Count>::merge(int components, std::int32_t patterns) {
   const int rows = lattice_.faceEnd(1);
-  values_.resize(numberPatterns() * kSize);
+  values_.resize(patterns * kSize);
   // Where each plane's part begins, and which patterns it is the first to have.
   std::vector<std::int32_t> first_block, first_pattern;
   segments_.clear();
-  range_ = {};
-  std::int32_t count = 0, patterns = 0;
-  for (std::size_t k = 0; k < planes_.size(); ++k) {
-    const Plane& plane = planes_[k];
+  planes_ = {};
+  std::int32_t count = 0, known = 0;
+  for (std::size_t k = 0; k < building_.size(); ++k) {
+    const Plane& plane = building_[k];
     first_block.push_back(count);
-    first_pattern.push_back(patterns);
+    first_pattern.push_back(known);
     for (int component = 0; component < components; ++component) {
       const auto size = static_cast<std::int32_t>(plane.blocks[component].size());
       if (size > 0) segments_.push_back({component, count, count + size});
       count += size;
     }
     if (count > first_block.back()) {
-      if (range_.end == 0) range_.first = static_cast<int>(k);
-      range_.end = static_cast<int>(k) + 1;
+      if (planes_.end == 0) planes_.first = static_cast<int>(k);
+      planes_.end = static_cast<int>(k) + 1;
     }
-    for (const std::int32_t number : plane.number) patterns = std::max(patterns, number + 1);
+    for (const std::int32_t number : plane.number) known = std::max(known, number + 1);
   }
   blocks_.resize(count);
-  row_begin_.resize(planes_.size() * components * rows + 1);
+  row_begin_.resize(building_.size() * components * rows + 1);
   row_begin_[0] = 0;
 #pragma omp parallel for schedule(static, kPlanesInTurn)
-  for (std::size_t k = 0; k < planes_.size(); ++k) {
-    Plane& plane = planes_[k];
+  for (std::size_t k = 0; k < building_.size(); ++k) {
+    Plane& plane = building_[k];
     std::int32_t begin = first_block[k], next = first_pattern[k];
     for (std::size_t p = 0; p < plane.number.size(); ++p) {
       if (plane.number[p] != next) continue;
@@ -346,7 +343,7 @@ void StencilBlocks<Real, Count>::merge(int components) {
 
 // Both builds in the same order: by rows, and along them.
 template <class Real, int Count>
-void StencilBlocks<Real, Count>::findLost(int components) {
+void StencilBlocks<Real, Count>::findLost(int components, const Last& before) {
   lost_.clear();
   if (anew_) return;
   const int rows = lattice_.faceEnd(1);
@@ -356,10 +353,10 @@ void StencilBlocks<Real, Count>::findLost(int components) {
   for (std::size_t k = 0; k < planes.size(); ++k) {
     for (std::size_t at = k * plane_rows; at < (k + 1) * plane_rows; ++at) {
       auto now = row_begin_[at];
-      for (auto b = last_.row_begin[at]; b < last_.row_begin[at + 1]; ++b) {
-        while (now < row_begin_[at + 1] && blocks_[now].place < last_.blocks[b].place) ++now;
-        if (now < row_begin_[at + 1] && blocks_[now].place == last_.blocks[b].place) continue;
-        planes[k].push_back({static_cast<std::int32_t>(at / rows % components), last_.blocks[b].place});
+      for (auto b = before.row_begin[at]; b < before.row_begin[at + 1]; ++b) {
+        while (now < row_begin_[at + 1] && blocks_[now].place < before.blocks[b].place) ++now;
+        if (now < row_begin_[at + 1] && blocks_[now].place == before.blocks[b].place) continue;
+        planes[k].push_back({static_cast<std::int32_t>(at / rows % components), before.blocks[b].place});
       }
     }
   }
