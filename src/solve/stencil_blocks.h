@@ -1,19 +1,18 @@
 #pragma once
 // A stencil operator on a lattice, compressed: x-rows are cut into blocks of kLanes unknowns, and each block names a
-// pattern, the coefficients of its lanes. Blocks that look alike - everything away from boundaries, and most of what
-// lies along walls - share one pattern, so that the coefficients of a level stay in the first cache and only the fields
-// are streamed. Blocks without any unknown are left out; lanes without one have coefficients of zero.
+// pattern of its plane, the coefficients of its lanes. Blocks of a plane that look alike - everything away from
+// boundaries, and most of what lies along walls - share one pattern, and planes that look alike share all of theirs, so
+// that the coefficients of a level stay in the first cache and only the fields are streamed. Blocks without any unknown
+// are left out; lanes without one have coefficients of zero.
 //
 // Coefficient q of lane i of pattern p: values[(p * Count + q) * kLanes + i].
 
 #include <omp.h>
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
-#include <utility>
 #include <vector>
 
 #include "solve/index_table.h"
@@ -26,11 +25,26 @@ namespace monolith {
 // Fewer blocks than this are not worth waking a second thread for.
 constexpr std::ptrdiff_t kBlocksWorthSharing = 500;
 
+// What does not depend on the coefficients.
+struct StencilLayout {
+  struct Block {
+    std::int32_t place, pattern;
+  };
+  // Blocks of one component in one plane, numbered through all planes; those of the plane begin at `plane_begin`.
+  struct Segment {
+    std::int32_t component, plane, plane_begin, begin, end;
+  };
+  struct Lost {
+    std::int32_t component, place;
+  };
+};
+
 template <class Real, int Count>
-class StencilBlocks {
+class StencilBlocks : private StencilLayout {
  public:
   static constexpr int kCount = Count;
   using Row = std::array<std::vector<Real>, Count>;
+  using StencilLayout::Lost;
 
   // fill(component, row, width, out) writes the coefficients of `width` lanes from index `row` on, all zero: no unknown;
   // or returns false, then there is none in the row. `first[component]`: index along x of the first lane of a row.
@@ -53,9 +67,6 @@ class StencilBlocks {
   // Whether the blocks are those of `build` but for lost() and new ones.
   bool follows(long build) const { return !anew_ && build + 1 == build_; }
   long build() const { return build_; }
-  struct Lost {
-    std::int32_t component, place;
-  };
   const std::vector<Lost>& lost() const { return lost_; }
 
   // The next build makes all rows anew, steady or not.
@@ -66,7 +77,7 @@ class StencilBlocks {
   // f(component, place, values): for every block, shared among threads; f must write its own lanes only.
   template <class BlockFunction>
   void forEach(BlockFunction&& f) const {
-    const auto total = static_cast<std::ptrdiff_t>(blocks_.size());
+    const auto total = static_cast<std::ptrdiff_t>(blocks());
     if (total < kBlocksWorthSharing) {
       run(0, total, f);
       return;
@@ -79,82 +90,72 @@ class StencilBlocks {
   }
 
   // Those that have blocks.
-  Planes planes() const { return planes_; }
-  std::size_t blocks() const { return blocks_.size(); }
-  std::size_t lanes() const { return blocks_.size() * kLanes; }
-  std::size_t patterns() const { return values_.size() / (Count * kLanes); }
+  Planes planes() const { return with_blocks_; }
+  std::size_t blocks() const { return segments_.empty() ? 0 : segments_.back().end; }
+  std::size_t lanes() const { return blocks() * kLanes; }
+  // That differ, or are of planes that do.
+  std::size_t patterns() const {
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < planes_.size(); ++k) {
+      if (alike_[k] == static_cast<std::int32_t>(k)) count += planes_[k].hash.size();
+    }
+    return count;
+  }
 
-  // The same in another precision.
+  // The same in another precision. Where that was made of the build before, only what has changed since.
   template <class To>
   void convertTo(StencilBlocks<To, Count>& out) const {
-    out.blocks_.resize(blocks_.size());
-    std::memcpy(out.blocks_.data(), blocks_.data(), blocks_.size() * sizeof(Block));
-    out.segments_.resize(segments_.size());
-    std::memcpy(out.segments_.data(), segments_.data(), segments_.size() * sizeof(Segment));
-    out.values_.resize(values_.size());
-#pragma omp parallel for simd schedule(static)
-    for (Eigen::Index i = 0; i < values_.size(); ++i) out.values_[i] = static_cast<To>(values_[i]);
+    const bool known = follows(out.build_) && out.planes_.size() == planes_.size();
+    out.planes_.resize(planes_.size());
+#pragma omp parallel for schedule(static, kPlanesInTurn)
+    for (std::size_t k = 0; k < planes_.size(); ++k) {
+      if (known && !changed_[k]) continue;
+      out.planes_[k].blocks = planes_[k].blocks;
+      out.planes_[k].hash = planes_[k].hash;
+      out.planes_[k].values.assign(planes_[k].values.begin(), planes_[k].values.end());
+    }
+    out.alike_ = alike_;
+    out.segments_ = segments_;
+    out.with_blocks_ = with_blocks_;
     out.lattice_ = lattice_;
-    out.planes_ = planes_;
     out.anew_ = anew_;
     out.build_ = build_;
-    out.lost_.clear();
-    for (const Lost& lost : lost_) out.lost_.push_back({lost.component, lost.place});
+    out.lost_ = lost_;
   }
 
  private:
   template <class, int>
   friend class StencilBlocks;
 
-  struct Block {
-    std::int32_t place, pattern;
-  };
-  struct Segment {
-    std::int32_t component, begin, end;
-  };
   static constexpr std::size_t kSize = Count * kLanes;
   static constexpr long kNoGeneration = -2;
-  using Values = Eigen::Array<Real, Eigen::Dynamic, 1>;  // resized, it is not written by one thread first
 
-  // What a build makes of one plane of the lattice.
   struct Plane {
-    std::vector<std::vector<Block>> blocks;  // by components
-    std::vector<std::int32_t> row_ends;      // blocks up to here, of a component's rows
+    std::vector<Block> blocks;            // by components, within them by rows
+    std::vector<std::int32_t> row_begin;  // in blocks, of every row; one more at the end
+    std::vector<std::uint64_t> hash;      // of each pattern
     std::vector<Real> values;
-    std::vector<std::int32_t> origin;  // of each pattern among the last build's; -1: none
-    std::vector<std::uint64_t> hash;   // of each pattern
-    std::vector<std::int32_t> number;  // of each pattern among all planes'
 
     // All but its memory.
     void clear() {
-      for (auto& of_component : blocks) of_component.clear();
-      row_ends.clear();
-      values.clear();
-      origin.clear();
+      blocks.clear();
+      row_begin.clear();
       hash.clear();
-      number.clear();
+      values.clear();
     }
-    std::int32_t add(const Real* pattern, std::int32_t from) {
+    void add(const Real* pattern, std::uint64_t pattern_hash) {
       values.insert(values.end(), pattern, pattern + kSize);
-      origin.push_back(from);
-      hash.push_back(hashOf(pattern));
-      return static_cast<std::int32_t>(origin.size()) - 1;
+      hash.push_back(pattern_hash);
     }
+    const Real* pattern(std::int32_t p) const { return values.data() + p * kSize; }
   };
-  // What the last build has left.
-  struct Last {
-    std::vector<Block> blocks;
-    Values values;
-    std::vector<std::int32_t> row_begin;
 
-    std::size_t patterns() const { return values.size() / kSize; }
-  };
+  // `before` is what the plane was; its rows that are steady in `kept` are taken from there.
   template <class FillRow>
-  void buildPlane(int k, const std::vector<int>& first, FillRow&& fill, const SteadyRows* kept, const Last& before,
+  void buildPlane(int k, const std::vector<int>& first, FillRow&& fill, const SteadyRows* kept, const Plane& before,
                   Plane& plane) const;
-  std::int32_t numberPatterns(std::size_t patterns_before);
-  void merge(int components, std::int32_t patterns);
-  void findLost(int components, const Last& before);
+  static void findLost(const Plane& before, const Plane& plane, int rows, std::vector<Lost>& lost);
+  void arrange(int components);
 
   // Some of a pattern's words tell most patterns apart; which are the same is seen from all of them.
   static std::uint64_t hashOf(const Real* pattern) {
@@ -170,79 +171,100 @@ class StencilBlocks {
     return sum;
   }
   static bool same(const Real* a, const Real* b) { return std::memcmp(a, b, kSize * sizeof(Real)) == 0; }
+  static bool samePatterns(const Plane& a, const Plane& b) {
+    return a.hash == b.hash && std::memcmp(a.values.data(), b.values.data(), a.values.size() * sizeof(Real)) == 0;
+  }
 
   template <class BlockFunction>
   void run(std::ptrdiff_t begin, std::ptrdiff_t end, BlockFunction&& f) const {
     for (const Segment& segment : segments_) {
+      const Block* blocks = planes_[segment.plane].blocks.data() - segment.plane_begin;
+      const Real* values = planes_[alike_[segment.plane]].values.data();
       const auto last = std::min<std::ptrdiff_t>(end, segment.end);
       for (auto i = std::max<std::ptrdiff_t>(begin, segment.begin); i < last; ++i) {
-        f(segment.component, static_cast<std::ptrdiff_t>(blocks_[i].place),
-          values_.data() + blocks_[i].pattern * kSize);
+        f(segment.component, static_cast<std::ptrdiff_t>(blocks[i].place), values + blocks[i].pattern * kSize);
       }
     }
   }
 
-  std::vector<Block> blocks_;            // by planes, within them by components, then by rows
-  std::vector<Segment> segments_;        // blocks of one component in one plane
-  Planes planes_;
-  Values values_;
-  std::vector<std::int32_t> row_begin_;  // in blocks_, of every row; one more at the end
-  long generation_ = kNoGeneration;      // of the steady rows that it was built with
+  std::vector<Plane> planes_;
+  std::vector<std::int32_t> alike_;    // of each plane, the lowest of those next to it that have the same patterns
+  std::vector<std::uint8_t> changed_;  // planes that are not those of the build before
+  std::vector<Segment> segments_;
+  Planes with_blocks_;
+  long generation_ = kNoGeneration;  // of the steady rows that it was built with
   Lattice lattice_;
   bool anew_ = true;  // the last build was the first on its lattice
   long build_ = 0;
-  std::vector<Lost> lost_;       // blocks that the build before had
-  std::vector<Plane> building_;  // planes, of use within a build only, kept for their memory
+  std::vector<Lost> lost_;    // blocks that the build before had
+  std::vector<Plane> spare_;  // of each thread, of use within a build only, kept for their memory
 };
 
 template <class Real, int Count>
 template <class FillRow>
 void StencilBlocks<Real, Count>::build(const Lattice& l, const std::vector<int>& first, FillRow&& fill,
                                        const SteadyRows* steady) {
-  const int components = static_cast<int>(first.size());
+  const int components = static_cast<int>(first.size()), planes = l.faceEnd(2), rows = l.faceEnd(1);
   anew_ = build_ == 0 || lattice_.n != l.n || lattice_.periodic != l.periodic;
   const bool keeps = !anew_ && wouldKeep(steady);
-  const Last last{std::move(blocks_), std::move(values_), std::move(row_begin_)};
   lattice_ = l;
   ++build_;
   generation_ = steady != nullptr ? steady->generation() : kNoGeneration;
-  building_.resize(l.faceEnd(2));
+  planes_.resize(planes);
+  changed_.resize(planes);
+  spare_.resize(std::max<std::size_t>(spare_.size(), omp_get_max_threads()));
+  std::vector<std::vector<Lost>> lost(planes);
 #pragma omp parallel for schedule(static, kPlanesInTurn)
-  for (int k = 0; k < l.faceEnd(2); ++k) buildPlane(k, first, fill, keeps ? steady : nullptr, last, building_[k]);
-  merge(components, numberPatterns(last.patterns()));
-  findLost(components, last);
+  for (int k = 0; k < planes; ++k) {
+    bool changes = !keeps;
+    for (int j = 0; j < rows && !changes; ++j) changes = !steady->steady(j, k);
+    changed_[k] = changes ? 1 : 0;
+    if (!changes) continue;
+    Plane& next = spare_[omp_get_thread_num()];
+    buildPlane(k, first, fill, keeps ? steady : nullptr, planes_[k], next);
+    if (!anew_) findLost(planes_[k], next, rows, lost[k]);
+    planes_[k] = next;  // copied: its memory is as much as it needs
+  }
+  lost_.clear();
+  for (const auto& of_plane : lost) lost_.insert(lost_.end(), of_plane.begin(), of_plane.end());
+  arrange(components);
 }
 
 template <class Real, int Count>
 template <class FillRow>
 void StencilBlocks<Real, Count>::buildPlane(int k, const std::vector<int>& first, FillRow&& fill,
-                                            const SteadyRows* kept, const Last& before, Plane& plane) const {
+                                            const SteadyRows* kept, const Plane& before, Plane& plane) const {
   const Lattice& l = lattice_;
   const int components = static_cast<int>(first.size());
   const int row_blocks = (l.n[0] + kLanes - 1) / kLanes;
   const int rows = l.faceEnd(1);
   plane.clear();
-  plane.blocks.resize(components);
   Row row;
   for (auto& r : row) r.resize(row_blocks * kLanes);
   std::vector<Real> candidate(kSize);
-  // The last build's patterns, in this plane.
-  std::vector<std::int32_t> here(kept != nullptr ? before.patterns() : 0, -1);
+  IndexTable table(static_cast<std::size_t>(components) * rows * row_blocks);
+  const auto number = [&](const Real* pattern, std::uint64_t hash) {
+    const std::int32_t found =
+        table.number(hash, [&](std::int32_t p) { return plane.hash[p] == hash && same(plane.pattern(p), pattern); });
+    if (found == static_cast<std::int32_t>(plane.hash.size())) plane.add(pattern, hash);
+    return found;
+  };
+  // Of the patterns that the plane had, which they are now.
+  std::vector<std::int32_t> here(kept != nullptr ? before.hash.size() : 0, -1);
   for (int component = 0; component < components; ++component) {
-    std::vector<Block>& blocks = plane.blocks[component];
     std::vector<std::int32_t> above(row_blocks, -1);  // patterns of the row before
     std::int32_t last = -1;
     for (int j = 0; j < rows; ++j) {
-      if (j > 0) plane.row_ends.push_back(static_cast<std::int32_t>(blocks.size()));
+      plane.row_begin.push_back(static_cast<std::int32_t>(plane.blocks.size()));
       const auto start = l.index(first[component], j, k);
       if (kept != nullptr && kept->steady(j, k)) {
-        const std::size_t at = (static_cast<std::size_t>(k) * components + component) * rows + j;
+        const std::size_t at = static_cast<std::size_t>(component) * rows + j;
         for (auto b = before.row_begin[at]; b < before.row_begin[at + 1]; ++b) {
           const Block& block = before.blocks[b];
           std::int32_t& pattern = here[block.pattern];
-          if (pattern < 0) pattern = plane.add(before.values.data() + block.pattern * kSize, block.pattern);
+          if (pattern < 0) pattern = number(before.pattern(block.pattern), before.hash[block.pattern]);
           above[(block.place - start) / kLanes] = last = pattern;
-          blocks.push_back({block.place, pattern});
+          plane.blocks.push_back({block.place, pattern});
         }
         continue;
       }
@@ -257,110 +279,55 @@ void StencilBlocks<Real, Count>::buildPlane(int k, const std::vector<int>& first
         }
         if (std::all_of(candidate.begin(), candidate.end(), [](Real value) { return value == Real(0); })) continue;
         const auto fits = [&](std::int32_t pattern) {
-          return pattern >= 0 && same(plane.values.data() + pattern * kSize, candidate.data());
+          return pattern >= 0 && same(plane.pattern(pattern), candidate.data());
         };
         std::int32_t pattern = fits(above[block]) ? above[block] : fits(last) ? last : -1;
-        if (pattern < 0) pattern = plane.add(candidate.data(), -1);
+        if (pattern < 0) pattern = number(candidate.data(), hashOf(candidate.data()));
         above[block] = last = pattern;
-        blocks.push_back({static_cast<std::int32_t>(start + block * kLanes), pattern});
+        plane.blocks.push_back({static_cast<std::int32_t>(start + block * kLanes), pattern});
       }
     }
-    plane.row_ends.push_back(static_cast<std::int32_t>(blocks.size()));
+  }
+  plane.row_begin.push_back(static_cast<std::int32_t>(plane.blocks.size()));
+}
+
+// Both in the same order: by rows, and along them.
+template <class Real, int Count>
+void StencilBlocks<Real, Count>::findLost(const Plane& before, const Plane& plane, int rows, std::vector<Lost>& lost) {
+  const int all = static_cast<int>(plane.row_begin.size()) - 1;
+  for (int at = 0; at < all; ++at) {
+    auto now = plane.row_begin[at];
+    const auto end = plane.row_begin[at + 1];
+    for (auto b = before.row_begin[at]; b < before.row_begin[at + 1]; ++b) {
+      const std::int32_t place = before.blocks[b].place;
+      while (now < end && plane.blocks[now].place < place) ++now;
+      if (now == end || plane.blocks[now].place != place) lost.push_back({at / rows, place});
+    }
   }
 }
 
-// One after the other, so that patterns are numbered the same way on any number of threads. Returns how many there are.
 template <class Real, int Count>
-std::int32_t StencilBlocks<Real, Count>::numberPatterns(std::size_t patterns_before) {
-  std::size_t most = 0;
-  for (const Plane& plane : building_) most += plane.origin.size();
-  IndexTable table(most);
-  std::vector<std::int32_t> renumbered(patterns_before, -1);
-  std::vector<std::pair<const Real*, std::uint64_t>> known;
-  for (Plane& plane : building_) {
-    plane.number.resize(plane.origin.size());
-    for (std::size_t p = 0; p < plane.origin.size(); ++p) {
-      const std::int32_t origin = plane.origin[p];
-      std::int32_t found = origin < 0 ? -1 : renumbered[origin];
-      if (found < 0) {
-        const Real* values = plane.values.data() + p * kSize;
-        const std::uint64_t hash = plane.hash[p];
-        found =
-            table.number(hash, [&](std::int32_t i) { return known[i].second == hash && same(known[i].first, values); });
-        if (found == static_cast<std::int32_t>(known.size())) known.emplace_back(values, hash);
-        if (origin >= 0) renumbered[origin] = found;
-      }
-      plane.number[p] = found;
-    }
-  }
-  return table.count();
-}
-
-template <class Real, int Count>
-void StencilBlocks<Real, Count>::merge(int components, std::int32_t patterns) {
+void StencilBlocks<Real, Count>::arrange(int components) {
   const int rows = lattice_.faceEnd(1);
-  values_.resize(patterns * kSize);
-  // Where each plane's part begins, and which patterns it is the first to have.
-  std::vector<std::int32_t> first_block, first_pattern;
+  alike_.resize(planes_.size());
   segments_.clear();
-  planes_ = {};
-  std::int32_t count = 0, known = 0;
-  for (std::size_t k = 0; k < building_.size(); ++k) {
-    const Plane& plane = building_[k];
-    first_block.push_back(count);
-    first_pattern.push_back(known);
+  with_blocks_ = {};
+  std::int32_t count = 0;
+  for (std::int32_t k = 0; k < static_cast<std::int32_t>(planes_.size()); ++k) {
+    const Plane& plane = planes_[k];
+    alike_[k] = k;
+    if (k > 0 && samePatterns(plane, planes_[alike_[k - 1]])) alike_[k] = alike_[k - 1];
+    const std::int32_t plane_begin = count;
     for (int component = 0; component < components; ++component) {
-      const auto size = static_cast<std::int32_t>(plane.blocks[component].size());
-      if (size > 0) segments_.push_back({component, count, count + size});
-      count += size;
+      const std::int32_t begin = count;
+      count = plane_begin + plane.row_begin[(component + 1) * rows];
+      if (count > begin) segments_.push_back({component, k, plane_begin, begin, count});
     }
-    if (count > first_block.back()) {
-      if (planes_.end == 0) planes_.first = static_cast<int>(k);
-      planes_.end = static_cast<int>(k) + 1;
-    }
-    for (const std::int32_t number : plane.number) known = std::max(known, number + 1);
-  }
-  blocks_.resize(count);
-  row_begin_.resize(building_.size() * components * rows + 1);
-  row_begin_[0] = 0;
-#pragma omp parallel for schedule(static, kPlanesInTurn)
-  for (std::size_t k = 0; k < building_.size(); ++k) {
-    Plane& plane = building_[k];
-    std::int32_t begin = first_block[k], next = first_pattern[k];
-    for (std::size_t p = 0; p < plane.number.size(); ++p) {
-      if (plane.number[p] != next) continue;
-      std::copy_n(plane.values.data() + p * kSize, kSize, values_.data() + next * kSize);
-      ++next;
-    }
-    for (int component = 0; component < components; ++component) {
-      for (int j = 0; j < rows; ++j) {
-        row_begin_[(k * components + component) * rows + j + 1] = begin + plane.row_ends[component * rows + j];
-      }
-      for (const Block& block : plane.blocks[component]) blocks_[begin++] = {block.place, plane.number[block.pattern]};
+    if (count > plane_begin) {
+      if (with_blocks_.end == 0) with_blocks_.first = k;
+      with_blocks_.end = k + 1;
     }
   }
-}
-
-// Both builds in the same order: by rows, and along them.
-template <class Real, int Count>
-void StencilBlocks<Real, Count>::findLost(int components, const Last& before) {
-  lost_.clear();
-  if (anew_) return;
-  const int rows = lattice_.faceEnd(1);
-  const auto plane_rows = static_cast<std::size_t>(components) * rows;
-  std::vector<std::vector<Lost>> planes(lattice_.faceEnd(2));
-#pragma omp parallel for schedule(static, kPlanesInTurn)
-  for (std::size_t k = 0; k < planes.size(); ++k) {
-    for (std::size_t at = k * plane_rows; at < (k + 1) * plane_rows; ++at) {
-      auto now = row_begin_[at];
-      for (auto b = before.row_begin[at]; b < before.row_begin[at + 1]; ++b) {
-        while (now < row_begin_[at + 1] && blocks_[now].place < before.blocks[b].place) ++now;
-        if (now < row_begin_[at + 1] && blocks_[now].place == before.blocks[b].place) continue;
-        planes[k].push_back({static_cast<std::int32_t>(at / rows % components), before.blocks[b].place});
-      }
-    }
-  }
-  for (const auto& plane : planes) lost_.insert(lost_.end(), plane.begin(), plane.end());
 }
 
 }  // namespace monolith

@@ -26,6 +26,7 @@ struct Moment {
   double slope;              // of the surface
   double number;             // viscous
   bool rates = false;
+  bool skips = false;  // what is in single precision misses it
 };
 
 // All that is built for a step, by one object after the other or by the same one.
@@ -51,14 +52,17 @@ struct Built {
     const StaggeredCoefficients<double>& c = problem.coefficients;
     buildFaceBlocks(c, faces, &transfer, &impulse, steady);
     buildCellBlocks(c, cells, steady);
+    skipped = at.skips;
+    if (!skipped) {
+      faces.convertTo(single);
+      cells.convertTo(single_cells);
+    }
     pressure.set(l, c.has_pressure, c.open, impulse, steady);
     holds = c.viscous && at.number > 1.0;
     if (!holds) {
       held.set(l, c.has_pressure, c.open, impulse, steady);
       return;
     }
-    FaceBlocks<float> single;
-    faces.convertTo(single);
     velocity.set(l, single, transfer, problem.coarse.levels, problem.coarse.levels.size(), problem.coarse.generation(),
                  2);
     permeability.set(problem, at.number, velocity, impulse);
@@ -71,13 +75,32 @@ struct Built {
   SolidFractions solids;
   FaceBlocks<double> faces;
   CellBlocks<double> cells;
+  FaceBlocks<float> single;
+  CellBlocks<float> single_cells;
   FaceField<float> transfer, impulse;
   PressureMultigrid pressure;
   VelocityMultigrid velocity;
-  bool holds = false;  // at this moment viscosity does hold the liquid back
+  bool skipped = false;  // this moment
+  bool holds = false;    // at this moment viscosity does hold the liquid back
   Permeability permeability;
   PressureMultigrid held;  // with permeability where it holds
 };
+
+// Momentum and divergence of random unknowns.
+template <class Real>
+std::vector<std::vector<Real>> applied(const StepProblem& problem, const FaceBlocks<Real>& faces,
+                                       const CellBlocks<Real>& cells, const FaceField<double>& U) {
+  const Lattice& l = problem.grid.lattice;
+  FaceField<Real> u;
+  for (int a = 0; a < 3; ++a) u[a].assign(U[a].begin(), U[a].end());
+  const std::vector<Real> p = u[1];
+  std::vector<std::vector<Real>> out(4, std::vector<Real>(l.size, Real(0)));
+  const Faces<const Real> from{u[0].data(), u[1].data(), u[2].data()};
+  applyMomentum(l, faces, problem.coefficients.viscous, from, p.data(),
+                Faces<Real>{out[0].data(), out[1].data(), out[2].data()});
+  applyDivergence(l, cells, from, Real(0), static_cast<const Real*>(nullptr), out[3].data());
+  return out;
+}
 
 FaceField<double> randomFaces(const Lattice& l, unsigned seed) {
   std::mt19937 random(seed);
@@ -105,16 +128,13 @@ void expectTheSame(Built& kept, Built& fresh, const std::string& what) {
     EXPECT_EQ(kept.impulse[a], fresh.impulse[a]) << what;
   }
   FaceField<double> U = randomFaces(l, 7);
-  std::vector<double> p = U[1];
-  const auto applied = [&](const Built& built) {
-    std::vector<std::vector<double>> out(4, std::vector<double>(l.size, 0.0));
-    const Faces<const double> from{U[0].data(), U[1].data(), U[2].data()};
-    applyMomentum(l, built.faces, c.viscous, from, static_cast<const double*>(p.data()),
-                  Faces<double>{out[0].data(), out[1].data(), out[2].data()});
-    applyDivergence(l, built.cells, from, 0.0, static_cast<const double*>(nullptr), out[3].data());
-    return out;
-  };
-  EXPECT_EQ(applied(kept), applied(fresh)) << what;
+  EXPECT_EQ(applied(kept.problem, kept.faces, kept.cells, U), applied(fresh.problem, fresh.faces, fresh.cells, U))
+      << what;
+  if (!kept.skipped) {
+    EXPECT_EQ(applied(kept.problem, kept.single, kept.single_cells, U),
+              applied(fresh.problem, fresh.single, fresh.single_cells, U))
+        << what;
+  }
   std::vector<float> g(l.size, 0.0f);
   for (std::size_t i = 0; i < l.size; ++i) g[i] = d.has_pressure[i] ? static_cast<float>(U[2][i]) : 0.0f;
   clearHalo(l, g);
@@ -149,16 +169,17 @@ TEST(SteadyRows, KeepWhatWouldBeBuiltAnew) {
     grid.lattice = Lattice({20, 22, 24}, {open, open, false});
     grid.h = 0.05;
     const double full = 100.0;
-    const std::vector<Moment> moments = {{{0.5, 0.5, 0.3}, full, 0.0, 1.0},        {{0.5, 0.51, 0.3}, full, 0.0, 1.0},
-                                         {{0.5, 0.51, 0.3}, full, 0.0, 1.0},       {{0.5, 0.2, 0.9}, full, 0.0, 1.0},
-                                         {{0.5, 0.2, 0.9}, full, 0.0, 0.6},        {{0.5, 0.2, 0.9}, 12.3, 0.0, 0.6},
-                                         {{0.5, 0.21, 0.85}, 12.3, 0.1, 0.6},      {{0.5, 0.21, 0.85}, 12.1, 0.0, 0.6},
-                                         {{0.5, 0.22, 0.8}, 12.1, 0.0, 0.6, true}, {{0.5, 0.23, 0.8}, 12.1, 0.0, 0.6},
-                                         {{0.5, 0.95, 0.8}, 9.4, 0.0, 0.6},        {{0.5, 0.95, 0.8}, 9.4, 0.0, 0.0},
-                                         {{0.5, 0.9, 0.75}, 9.5, 0.02, 0.0},       {{0.5, 0.9, 0.75}, 9.5, 0.02, 1e-3},
-                                         {{0.5, 0.88, 0.7}, 9.6, 0.02, 1e-3},      {{0.5, 0.88, 0.7}, full, 0.0, 50.0},
-                                         {{0.5, 0.6, 0.2}, full, 0.0, 50.0},       {{0.5, 0.6, 0.2}, 12.0, 0.0, 0.6},
-                                         {{0.5, 0.6, 0.2}, 12.0, 0.0, 20.0}};
+    const std::vector<Moment> moments = {
+        {{0.5, 0.5, 0.3}, full, 0.0, 1.0},   {{0.5, 0.51, 0.3}, full, 0.0, 1.0},
+        {{0.5, 0.51, 0.3}, full, 0.0, 1.0},  {{0.5, 0.2, 0.9}, full, 0.0, 1.0, false, true},
+        {{0.5, 0.2, 0.9}, full, 0.0, 1.0},   {{0.5, 0.2, 0.9}, full, 0.0, 0.6},
+        {{0.5, 0.2, 0.9}, 12.3, 0.0, 0.6},   {{0.5, 0.21, 0.85}, 12.3, 0.1, 0.6},
+        {{0.5, 0.21, 0.85}, 12.1, 0.0, 0.6}, {{0.5, 0.22, 0.8}, 12.1, 0.0, 0.6, true},
+        {{0.5, 0.23, 0.8}, 12.1, 0.0, 0.6},  {{0.5, 0.95, 0.8}, 9.4, 0.0, 0.6},
+        {{0.5, 0.95, 0.8}, 9.4, 0.0, 0.0},   {{0.5, 0.9, 0.75}, 9.5, 0.02, 0.0},
+        {{0.5, 0.9, 0.75}, 9.5, 0.02, 1e-3}, {{0.5, 0.88, 0.7}, 9.6, 0.02, 1e-3},
+        {{0.5, 0.88, 0.7}, full, 0.0, 50.0}, {{0.5, 0.6, 0.2}, full, 0.0, 50.0},
+        {{0.5, 0.6, 0.2}, 12.0, 0.0, 0.6},   {{0.5, 0.6, 0.2}, 12.0, 0.0, 20.0}};
     // So that liquid sticks at some of the viscous numbers only.
     const double sticking = 0.01 * kDensity * grid.h * grid.h / kTimeStep;
     Built kept(grid, sticking);
@@ -169,7 +190,7 @@ TEST(SteadyRows, KeepWhatWouldBeBuiltAnew) {
       Built fresh(grid, sticking);
       fresh.make(moments[i], false);
       expectTheSame(kept, fresh, (open ? "open, " : "walls, ") + std::to_string(i));
-      if (i == 11) kept.problem.forget();
+      if (i == 12) kept.problem.forget();
     }
     // Enough of them for the comparison to tell anything.
     EXPECT_GT(steady, 1000);
