@@ -20,9 +20,6 @@ constexpr double kLawFactor = 10.0;
 constexpr double kLearnable = 1000.0;
 constexpr double kLeastCurvature = 1e-8;
 constexpr double kSmallFloor = 3.0;
-// Many redundant contacts near the limit of their friction (an arch about to fall) may leave the law short of its
-// tolerance: so much of the contacts' speeds is accepted, and reported.
-constexpr double kAcceptableLaw = 1e-3;
 constexpr double kLeastSpeed = 1e-10;  // m/s
 
 }  // namespace
@@ -98,8 +95,7 @@ ContactGuess::Change ContactGuess::proceedFrom(const Eigen::VectorXd& twists, bo
   const double least = kSmallFloor * small * w0.cwiseAbs().maxCoeff() + kLeastSpeed;
   r_ = next;
   states_ = contactStates(rows_, D_, D_ * next + w0, next);
-  return {(friction.solved || friction.residual <= kAcceptableLaw) &&
-              change <= std::max(settledAt(tolerance_) * scale, least),
+  return {friction.acceptable() && change <= std::max(settledAt(tolerance_) * scale, least),
           scale > 0.0 ? change / scale : 0.0};
 }
 

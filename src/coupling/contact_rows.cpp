@@ -6,8 +6,10 @@
 namespace monolith {
 namespace {
 
-// A body that is already inside another is pushed out by this part of its depth in one step.
+// A body that is already inside another is pushed out by this part of its depth in one step, or in this time (s) if
+// that is longer: the speed that it takes stays.
 constexpr double kRecovery = 0.5;
+constexpr double kRecoveryTime = 0.02;
 // Contacts of two steps are the same one if they are closer than this.
 constexpr double kSamePlace = 0.5;  // cell widths
 
@@ -57,7 +59,8 @@ ContactRows buildContactRows(const StepProblem& problem, const std::vector<Conta
         }
       }
     }
-    out.bias[c] += contact.gap * (contact.gap < 0.0 ? kRecovery : 1.0) / problem.dt;
+    out.bias[c] +=
+        contact.gap < 0.0 ? kRecovery * contact.gap / std::max(problem.dt, kRecoveryTime) : contact.gap / problem.dt;
     // An impact within this step: it separates at the given part of its speed. What merely rests does not bounce.
     const bool closes = contact.gap + approach * problem.dt <= 0.0;
     if (laws[c].restitution > 0.0 && closes && approach < -resting_speed) {

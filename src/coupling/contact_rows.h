@@ -34,8 +34,8 @@ struct ContactRows {
   Eigen::Index count() const { return friction.size(); }
 };
 
-// `twists`: of the bodies that are not free. `laws`: one per contact. gravity * dt is the speed below which an approach is not
-// an impact.
+// `twists`: of the bodies that are not free. `laws`: one per contact. resting_speed, m/s: a slower approach is no
+// impact.
 ContactRows buildContactRows(const StepProblem& problem, const std::vector<Contact>& contacts,
                              const std::vector<ContactLaw>& laws, const std::vector<Vector6d>& twists,
                              double resting_speed);

@@ -130,6 +130,8 @@ void CoupledSystem::assembleVariable(SolidFractions& solids, const std::vector<R
   impl_->viscosity.start(impl_->problem, reference);
 }
 
+void CoupledSystem::setStuckTwists(const std::vector<Vector6d>& twists) { impl_->problem.stuck_twists = twists; }
+
 void CoupledSystem::evaluateViscosity(const ViscosityLaw& law, const CoupledState& state, ViscosityField& field) {
   impl_->load(state);
   impl_->viscosity.evaluate(impl_->problem, law, impl_->x, field);

@@ -39,6 +39,9 @@ class CoupledSystem {
   // The same with a viscosity that varies, `reference` its scale: to be followed by setViscosity() before each solve().
   void assembleVariable(SolidFractions& solids, const std::vector<RigidBody>& bodies,
                         const std::vector<double>& liquid_distance, double density, double reference, double dt);
+  // Twists of the liquid that sticks to the bodies before the step, where they are not those of the bodies: these have
+  // been set. Until the next assembly.
+  void setStuckTwists(const std::vector<Vector6d>& twists);
   // What the law makes of the velocities of a state.
   void evaluateViscosity(const ViscosityLaw& law, const CoupledState& state, ViscosityField& field);
   void setViscosity(const ViscosityField& field);

@@ -161,10 +161,10 @@ CoupledReport DirectSolver::solveWithContacts(const StepVector& rhs, const Conta
   second.solves += report.solves;
   second.friction_iterations = friction.iterations;
   second.contact_residual = friction.residual;
-  if (!friction.solved && second.status == CoupledReport::Status::kConverged) {
+  if (!friction.acceptable() && second.status == CoupledReport::Status::kConverged) {
     std::ostringstream text;
-    text << "friction of " << contacts.count() << " contacts did not reach its fixed point: the impulses still change by "
-         << friction.residual << " of the largest";
+    text << "friction of " << contacts.count() << " contacts did not reach its fixed point: their velocities miss "
+         << "Coulomb's law by " << friction.residual << " of the largest; accepted is " << kAcceptableLaw;
     second.status = CoupledReport::Status::kNotConverged;
     second.message = text.str();
   }

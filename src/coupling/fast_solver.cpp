@@ -97,7 +97,8 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
   system.updateSchur();
   system.packForces(rhs_fields, m.rhs);
   system.packMotion(x_fields, m.x);
-  const double rhs_norm = stepNorm(p, rhs_fields);
+  double rhs_norm = stepNorm(p, rhs_fields);
+  if (!std::isfinite(rhs_norm)) return m.notConverged(report, "what acts on liquid and bodies is too large a number");
   const Eigen::Index count = contacts.count();
 
   ContactGuess guess(contacts, r, options.tolerance);
@@ -106,6 +107,8 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
     // One cycle on the whole residual says roughly how the bodies would move without contact.
     system.setBorder(makeBorder(contacts, openStates(contacts)), guess.compliance(), kProximity);
     guess.startFrom(system.improvedTwists(m.rhs, m.x), report);
+    // What presses the contacts may be all that there is.
+    rhs_norm = std::max(rhs_norm, bodiesNorm(p, guess.push()));
   }
 
   bool lawful = false;

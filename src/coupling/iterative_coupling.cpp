@@ -66,7 +66,7 @@ CoupledReport solveIteratively(StepSolver& solver, const StepProblem& problem, c
     const Eigen::VectorXd next = contacts.J.transpose() * r;
     const double size = std::max({next.dot(K * next), push.dot(K * push), v.dot(M * v), 1e-300});
     change = std::sqrt((next - push).dot(K * (next - push)) / size);
-    if (friction.solved && change <= options.tolerance) {
+    if (friction.acceptable() && change <= options.tolerance) {
       report.status = CoupledReport::Status::kConverged;
       return report;
     }

@@ -36,6 +36,8 @@ void StepProblem::assemble(SolidFractions& solids, const std::vector<RigidBody>&
   pressure_scale = density * grid.h / dt;
 
   stuck_inertia.assign(all_bodies.size(), Matrix6d::Zero());
+  stuck_twists.clear();
+  for (const RigidBody& body : all_bodies) stuck_twists.push_back(body.twist);
   cell_viscosity.clear();
   if (discretisation == Discretisation::kFitted) {
     assembleFitted(solids, liquid_distance, rates);
@@ -150,7 +152,7 @@ void StepProblem::toVelocities(FaceField<double>& unknowns) const {
 }
 
 Vector6d StepProblem::stickingTwist(std::size_t body, const Eigen::Vector3d& gravity) const {
-  Vector6d twist = (*bodies)[body].twist;
+  Vector6d twist = stuck_twists[body];
   twist.head<3>() += dt * gravity;
   return twist;
 }

@@ -98,6 +98,7 @@ class StepProblem {
   std::vector<double> radius;            // of free bodies, cells: of a sphere that displaces as much
   std::vector<Matrix6d> inertia;         // M^ of free bodies with the liquid that sticks to them
   std::vector<Matrix6d> stuck_inertia;   // M^ of the liquid that sticks to each body, free or not
+  std::vector<Vector6d> stuck_twists;    // that this liquid brings: of the bodies, unless told otherwise
   std::vector<EnclosedWeight> enclosed;  // in contacts, which liquid reaches from their rim
 
  private:

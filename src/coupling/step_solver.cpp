@@ -42,8 +42,13 @@ double stepNorm(const StepProblem& problem, const StepVector& r) {
   double sum = 0.0;
   for (const auto& field : r.velocity) sum += dot(field, field);
   sum += dot(r.pressure, r.pressure);
+  return std::hypot(std::sqrt(sum), bodiesNorm(problem, gatherBodies(problem, r.bodies)));
+}
+
+double bodiesNorm(const StepProblem& problem, const Eigen::VectorXd& free) {
+  double sum = 0.0;
   for (std::size_t i = 0; i < problem.free.size(); ++i) {
-    sum += r.bodies[problem.free[i]].cwiseQuotient(problem.twist_scale[i]).squaredNorm();
+    sum += free.segment<6>(6 * i).cwiseQuotient(problem.twist_scale[i]).squaredNorm();
   }
   return std::sqrt(sum);
 }

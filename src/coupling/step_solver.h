@@ -58,5 +58,7 @@ void scatterBodies(const StepProblem& problem, const Eigen::VectorXd& free, std:
 
 // |r| over velocities, pressures and, in the scale of their inertia, bodies.
 double stepNorm(const StepProblem& problem, const StepVector& r);
+// The bodies' part of it, of impulses on the free ones.
+double bodiesNorm(const StepProblem& problem, const Eigen::VectorXd& free);
 
 }  // namespace monolith

@@ -20,6 +20,7 @@ constexpr double kLargestShift = 0.1;      // cells in one correction
 constexpr double kBand = 6.0;
 constexpr double kLongestWay = kBand - 1.0;  // cells in one advection, kTravelToRedistance being undone before the next
 constexpr double kSampleBeyondSolid = 0.75;  // cells: outside, where the value is the liquid's own
+constexpr double kSlopeBeyondFoot = 1.0;     // cells: further out, where the slope is
 
 // Solution of the discrete eikonal equation at a cell from its nearest neighbours along each axis.
 double eikonal(std::array<double, 3> d) {
@@ -104,6 +105,15 @@ FreeSurface::FreeSurface(const MacGrid& grid, double fill_height, const std::vec
   if (by_level) {
     all.emplace_back(grid.origin, grid.origin + Eigen::Vector3d(grid.size()[0], grid.size()[1], fill_height));
   }
+  // With the periodic images next to the tank.
+  for (int a = 0; a < 3; ++a) {
+    if (!l.periodic[a]) continue;
+    const Eigen::Vector3d period = grid.size()[a] * Eigen::Vector3d::Unit(a);
+    for (std::size_t box = 0, own = all.size(); box < own; ++box) {
+      all.push_back(all[box].translated(-period));
+      all.push_back(all[box].translated(period));
+    }
+  }
   const auto isCovered = [&](const Eigen::Vector3d& x) {
     return std::any_of(all.begin(), all.end(), [&](const auto& box) { return box.contains(x); });
   };
@@ -117,7 +127,7 @@ FreeSurface::FreeSurface(const MacGrid& grid, double fill_height, const std::vec
       for (const int side : {-1, 1}) {
         const double at = side < 0 ? box.min()[a] : box.max()[a];
         const double wall = grid.origin[a] + (side < 0 ? 0.0 : grid.size()[a]);
-        if (side * (wall - at) <= nudge) continue;
+        if (!l.periodic[a] && side * (wall - at) <= nudge) continue;
         Eigen::Vector3d foot = x;
         foot[a] = at + side * nudge;
         if (within && isCovered(foot)) continue;
@@ -245,7 +255,6 @@ void FreeSurface::extendIntoSolids(const std::vector<float>& solid_distance) {
   if (full_ || empty_) return;
   const Lattice& l = grid_.lattice;
   copyField(distance_, scratch_.field);
-  const Eigen::Vector3d offset = nodeOffset(-1);
 #pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int k = 0; k < l.n[2]; ++k) {
     for (int j = 0; j < l.n[1]; ++j) {
@@ -259,8 +268,15 @@ void FreeSurface::extendIntoSolids(const std::vector<float>& solid_distance) {
         }
         const double length = out.norm();
         if (!(length > 0.0)) continue;
-        const Eigen::Vector3d x = Eigen::Vector3d(i, j, k) + offset + out * ((kSampleBeyondSolid - depth) / length);
-        scratch_.field[c] = sampleLinear(l, distance_, x - offset);
+        const Eigen::Vector3d foot = Eigen::Vector3d(i, j, k) + out * ((kSampleBeyondSolid - depth) / length);
+        const Eigen::Vector3d beyond = foot + out * (kSlopeBeyondFoot / length);
+        Eigen::Vector3d slope;
+        for (int a = 0; a < 3; ++a) {
+          const Eigen::Vector3d half = 0.5 * Eigen::Vector3d::Unit(a);
+          slope[a] = sampleLinear(l, distance_, beyond + half) - sampleLinear(l, distance_, beyond - half);
+        }
+        if (slope.norm() > 1.0) slope.normalize();
+        scratch_.field[c] = sampleLinear(l, distance_, foot) + slope.dot(Eigen::Vector3d(i, j, k) - foot);
       }
     }
   }

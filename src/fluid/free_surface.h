@@ -32,7 +32,8 @@ class FreeSurface {
   // The surface moves with the liquid over dt.
   void advect(const FaceField<double>& velocity, double dt, double maximum_speed);
 
-  // Continues the distance into solids. solid_distance in cell widths, cell centres.
+  // Continues the distance into solids with the slope that it has next to them: liquid without surface tension has no
+  // angle at which it meets a solid, and at rest it stays so. solid_distance in cell widths, cell centres.
   void extendIntoSolids(const std::vector<float>& solid_distance);
 
   // Liquid volume, m^3; cell_fluid: part of each cell that is not solid.

@@ -50,17 +50,10 @@ StepReport TankControl::step(std::vector<std::string>& lost) {
     return frames_.pose(frame.empty() ? frames_.worldFrame() : frame, simulation_.bodies());
   };
   const std::vector<Wrench> wrenches = wrenches_.evaluate(simulation_.time(), simulation_.bodies(), frame_pose, lost);
-  try {
-    for (std::size_t b = 0; b < wrenches.size(); ++b) simulation_.setWrench(static_cast<int>(b), wrenches[b]);
-    const StepReport report = simulation_.step();
-    if (report.committed()) wrenches_.commit();
-    return report;
-  } catch (const std::exception& error) {
-    StepReport report = simulation_.report();
-    report.status = SolveStatus::kNotConverged;
-    report.message = error.what();
-    return report;
-  }
+  for (std::size_t b = 0; b < wrenches.size(); ++b) simulation_.setWrench(static_cast<int>(b), wrenches[b]);
+  const StepReport report = simulation_.step();
+  if (report.committed()) wrenches_.commit();
+  return report;
 }
 
 void TankControl::reset() {

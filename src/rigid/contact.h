@@ -25,6 +25,16 @@ struct Contact {
 struct TankWalls {
   Eigen::AlignedBox3d inside;
   bool periodic[3] = {false, false, false};
+
+  // That of the periodic images of x which lies inside.
+  Eigen::Vector3d imageInside(const Eigen::Vector3d& x) const {
+    Eigen::Vector3d image = x;
+    for (int a = 0; a < 3; ++a) {
+      const double period = inside.sizes()[a];
+      if (periodic[a]) image[a] -= period * std::floor((x[a] - inside.min()[a]) / period);
+    }
+    return image;
+  }
 };
 
 class ContactDetector {

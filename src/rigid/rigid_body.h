@@ -39,6 +39,15 @@ struct RigidBody {
     const Eigen::Matrix3d R = q_WB.toRotationMatrix();
     return R * inertia_Bcm * R.transpose();
   }
+  // m, of a sphere about its centre of mass that holds it.
+  double radius() const {
+    const Eigen::AlignedBox3d box = distance->bounds().translated(-p_BBcm);
+    return box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).norm();
+  }
+  // m/s, that no point of it exceeds with this twist.
+  double fastestPoint(const Vector6d& of_twist) const {
+    return of_twist.head<3>().norm() + radius() * of_twist.tail<3>().norm();
+  }
   // m, that any of its points is from where it was at a pose X_WB.
   double distanceFrom(const Eigen::Isometry3d& X_WB) const {
     const Eigen::Isometry3d now = pose();

@@ -50,6 +50,8 @@ std::vector<char> closingBodies(const std::vector<RigidBody>& bodies, const std:
     changed = false;
     for (const Contact& c : contacts) {
       if (c.body_b == Contact::kWall || closing[c.body_a] == closing[c.body_b]) continue;
+      // What is not free does not pass a jump on.
+      if (bodies[closing[c.body_a] ? c.body_a : c.body_b].motion != BodyMotion::kFree) continue;
       closing[c.body_a] = closing[c.body_b] = 1;
       changed = true;
     }
@@ -169,14 +171,34 @@ WallIntrusion deepestInWalls(const RigidBody& body, const TankWalls& walls) {
 
 // By the sphere around its centre of mass: nearly always enough to tell, and cheap.
 bool mayReachOut(const RigidBody& body, const TankWalls& walls, double allowed) {
-  const Eigen::AlignedBox3d own = body.distance->bounds().translated(-body.p_BBcm);
-  const Vector3d reach = Vector3d::Constant(own.min().cwiseAbs().cwiseMax(own.max().cwiseAbs()).norm() - allowed);
+  const Vector3d reach = Vector3d::Constant(body.radius() - allowed);
   const Vector3d least = body.p_WBcm - reach, most = body.p_WBcm + reach;
   for (int axis = 0; axis < 3; ++axis) {
     if (walls.periodic[axis]) continue;
     if (!(least[axis] >= walls.inside.min()[axis] && most[axis] <= walls.inside.max()[axis])) return true;
   }
   return false;
+}
+
+// How far prescribed bodies that touch a body, by way of others or not, may press it, m.
+std::vector<double> pressedBy(const std::vector<Contact>& contacts, const std::vector<RigidBody>& before,
+                              const std::vector<RigidBody>& after) {
+  std::vector<double> pressed(after.size(), 0.0);
+  for (std::size_t b = 0; b < after.size(); ++b) {
+    if (after[b].motion == BodyMotion::kPrescribed) pressed[b] = kGivesWay * after[b].distanceFrom(before[b].pose());
+  }
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const Contact& c : contacts) {
+      if (c.body_b == Contact::kWall) continue;
+      for (const auto& [body, other] : {std::pair(c.body_a, c.body_b), std::pair(c.body_b, c.body_a)}) {
+        if (after[body].motion != BodyMotion::kFree || pressed[body] >= pressed[other]) continue;
+        pressed[body] = pressed[other];
+        changed = true;
+      }
+    }
+  }
+  return pressed;
 }
 
 std::string intrusion(const std::string& what, double depth, double allowed) {
@@ -191,15 +213,11 @@ std::string intrusion(const std::string& what, double depth, double allowed) {
 std::string describeIntrusion(const BodyPlan& plan, const std::vector<Contact>& contacts, const TankWalls& walls,
                               const std::vector<Vector6d>& twists, double dt, double allowed,
                               const std::vector<RigidBody>& before, const std::vector<RigidBody>& after) {
-  double pressed = 0.0;
-  for (std::size_t b = 0; b < after.size(); ++b) {
-    if (after[b].motion != BodyMotion::kPrescribed) continue;
-    pressed = std::max(pressed, kGivesWay * after[b].distanceFrom(before[b].pose()));
-  }
+  const std::vector<double> pressed = pressedBy(contacts, before, after);
   for (std::size_t b = 0; b < after.size(); ++b) {
     if (after[b].motion != BodyMotion::kFree || !mayReachOut(after[b], walls, allowed)) continue;
     const auto [depth, wall] = deepestInWalls(after[b], walls);
-    if (depth <= allowed || depth <= pressed + deepestInWalls(before[b], walls).depth) continue;
+    if (depth <= allowed || depth <= pressed[b] + deepestInWalls(before[b], walls).depth) continue;
     return intrusion("body '" + after[b].name + "' would stick out of the tank's wall " + wall, depth, allowed);
   }
   const auto velocity = [&](int body, const Vector3d& point) -> Vector3d {
@@ -209,7 +227,7 @@ std::string describeIntrusion(const BodyPlan& plan, const std::vector<Contact>& 
     if (c.body_b == Contact::kWall) continue;
     const double closes = -dt * (velocity(c.body_a, c.point) - velocity(c.body_b, c.point)).dot(c.normal);
     const double depth = closes - c.gap;
-    if (depth <= allowed || closes <= pressed) continue;
+    if (depth <= allowed || closes <= std::max(pressed[c.body_a], pressed[c.body_b])) continue;
     return intrusion("bodies '" + after[c.body_a].name + "' and '" + after[c.body_b].name + "' would overlap", depth,
                      allowed);
   }

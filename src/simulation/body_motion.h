@@ -17,8 +17,8 @@ struct BodyPlan {
   std::vector<char> closing;          // likewise
 };
 
-// Bodies that close a gap of the contacts within dt by more than the tolerance (m), and those that share a contact with
-// them: their velocities are going to jump.
+// Bodies that close a gap of the contacts within dt by more than the tolerance (m), and those that free ones of them
+// touch: their velocities are going to jump.
 std::vector<char> closingBodies(const std::vector<RigidBody>& bodies, const std::vector<Contact>& contacts, double dt,
                                 double gap_tolerance);
 
@@ -49,8 +49,8 @@ void finishSecondOrder(const BodyPlan& plan, const std::vector<Contact>& contact
 
 // Names what the solve's tolerance let through in a step of length dt, by how much and what was expected: a free body
 // that is out of a wall after it, or two that it brought into one another along one of the contacts, deeper than
-// `allowed` (m) and deeper than before by more than prescribed bodies, which nothing stops, press it. Empty if there is
-// none. Where speeds are absurd, a residual that is small beside them still is a long way.
+// `allowed` (m) and deeper than before by more than prescribed bodies, which nothing stops, press it by contact. Empty
+// if there is none. Where speeds are absurd, a residual that is small beside them still is a long way.
 std::string describeIntrusion(const BodyPlan& plan, const std::vector<Contact>& contacts, const TankWalls& walls,
                               const std::vector<Vector6d>& twists, double dt, double allowed,
                               const std::vector<RigidBody>& before, const std::vector<RigidBody>& after);

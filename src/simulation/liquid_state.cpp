@@ -13,38 +13,47 @@ namespace monolith {
 namespace {
 
 constexpr double kLeastSlope = 0.25;  // of the level set, per cell
+constexpr int kDeep = 3;              // faces of liquid in a row: a sheet tells no slope
 
 // Faces in air next to known ones go on with the slope that the velocity has in the liquid, mean over the directions
-// that tell one: held constant instead, velocity at the surface would be that of up to half a cell below it.
-void continueIntoAir(const Lattice& l, const SolidFractions& solids, const std::vector<FaceField<double>*>& fields,
+// that tell one: held constant instead, velocity at the surface would be that of up to half a cell below it. No
+// steeper than `steepest`: where no pressure holds the liquid back, in the tip of a jet, what goes on as steep as it is
+// would feed on itself from step to step.
+void continueIntoAir(const Lattice& l, const SolidFractions& solids, const std::vector<LiquidField>& fields,
                      FaceMask& known) {
   std::vector<std::uint8_t> before;
   for (int a = 0; a < 3; ++a) {
-    for (FaceField<double>* field : fields) fillHalo(l, (*field)[a]);
+    for (const LiquidField& field : fields) fillHalo(l, (*field.values)[a]);
     fillHalo(l, known[a]);
     copyField(known[a], before);
 #pragma omp parallel for schedule(static, kPlanesInTurn)
     for (int k = 0; k < l.faceEnd(2); ++k) {
       forEachNextToKnown(l, k, before.data(), [&](std::ptrdiff_t f, const std::array<int, 3>& at) {
         if (!(solids.distance[a][f] > 0.0 && solids.fluid[a][f] > 0.0)) return;
-        // Each from the face that is far to the one that is near.
-        std::array<std::pair<std::ptrdiff_t, std::ptrdiff_t>, 6> slopes;
+        // Rows of kDeep known faces, the two nearest of each.
+        std::array<std::array<std::ptrdiff_t, 2>, 6> rows;
         int count = 0;
         for (int b = 0; b < 3; ++b) {
           for (const int step : {-1, 1}) {
-            const int last = at[b] + 2 * step;
-            const bool inside = last >= 0 && last < (b == a ? l.faceEnd(b) : l.n[b]);
-            if (!inside && !l.periodic[b]) continue;
-            const auto near = f + step * l.stride[b];
-            const auto far = near + step * l.stride[b] - (inside ? 0 : step * l.n[b] * l.stride[b]);
-            if (before[near] && before[far]) slopes[count++] = {far, near};
+            int found = 0;
+            for (; found < kDeep; ++found) {
+              const int place = at[b] + (found + 1) * step;
+              const bool inside = place >= 0 && place < (b == a ? l.faceEnd(b) : l.n[b]);
+              const auto next = f + (found + 1) * step * l.stride[b] - (inside ? 0 : step * l.n[b] * l.stride[b]);
+              if (!(inside || l.periodic[b]) || !before[next]) break;
+              if (found < 2) rows[count][found] = next;
+            }
+            if (found == kDeep) ++count;
           }
         }
         if (count == 0) return;
-        for (FaceField<double>* field : fields) {
-          double* u = (*field)[a].data();
+        for (const LiquidField& field : fields) {
+          double* u = (*field.values)[a].data();
           double sum = 0.0;
-          for (int n = 0; n < count; ++n) sum += 2.0 * u[slopes[n].second] - u[slopes[n].first];
+          for (int n = 0; n < count; ++n) {
+            const auto [near, far] = rows[n];
+            sum += u[near] + std::clamp(u[near] - u[far], -field.steepest, field.steepest);
+          }
           u[f] = sum / count;
         }
         known[a][f] = 1;
@@ -147,9 +156,9 @@ void completeMotion(const SolidFractions& solids, const MacGrid& grid, const std
       }
     });
   }
+  continueIntoAir(l, solids, fields, known);
   std::vector<FaceField<double>*> values;
   for (const LiquidField& field : fields) values.push_back(field.values);
-  continueIntoAir(l, solids, values, known);
   extrapolateVelocity(l, layers, no_slip, known, values);
 }
 

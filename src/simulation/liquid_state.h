@@ -30,6 +30,7 @@ bool intersect(const FaceMask& mask, const FaceMask& other, FaceMask& both);
 struct LiquidField {
   FaceField<double>* values;
   const std::vector<Vector6d>* of_bodies;
+  double steepest;  // of the slope with which it goes on into the air, per cell
 };
 
 // Gives faces inside bodies the bodies' motion where the liquid sticks to them, and spreads what is known into solids

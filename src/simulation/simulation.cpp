@@ -22,6 +22,12 @@ constexpr int kLargestSubsteps = 64;
 // Parts of the very first step: the two of first order are short enough not to be seen in what follows.
 constexpr std::array<double, 2> kFirstParts = {0.25, 0.25};
 
+// J
+double kineticEnergy(const RigidBody& body) {
+  const Eigen::Vector3d spin = body.twist.tail<3>();
+  return 0.5 * body.mass * body.twist.head<3>().squaredNorm() + 0.5 * spin.dot(body.worldInertia() * spin);
+}
+
 }  // namespace
 
 Simulation::Simulation(const Scene& scene) : impl_(std::make_unique<Impl>(scene)) { impl_->initialise(); }
@@ -32,6 +38,7 @@ void Simulation::Impl::initialise() {
   report = StepReport();
   for (const BodyDescription& body : scene.bodies) {
     state.bodies.push_back(makeRigidBody(body, kMeshResolution * grid.h));
+    state.bodies.back().p_WBcm = walls.imageInside(state.bodies.back().p_WBcm);
   }
   const std::string overlaps = describeOverlaps(state.bodies, walls, kOverlapTolerance * grid.h);
   if (!overlaps.empty())
@@ -49,6 +56,7 @@ void Simulation::Impl::initialise() {
   for (auto& field : state.coupled.velocity) field.assign(grid.lattice.size, 0.0);
   for (auto& field : state.known) field.assign(grid.lattice.size, 1);
   state.coupled.pressure = hydrostaticPressure(grid, state.surface[0], scene.liquid.density, scene.gravity);
+  state.stuck_twists.assign(state.bodies.size(), Vector6d::Zero());
   state.coupled.liquid.assign(state.bodies.size(), Wrench());
   state.coupled.contact.assign(state.bodies.size(), Wrench());
   state.mean_liquid = state.coupled.liquid;
@@ -71,8 +79,7 @@ void Simulation::Impl::prepareGeometry() {
 double Simulation::Impl::bodySpeed() const {
   double speed = 0.0;
   for (const RigidBody& body : state.bodies) {
-    const double reach = body.distance->bounds().translated(-body.p_BBcm).sizes().norm();
-    speed = std::max(speed, body.twist.head<3>().norm() + 0.5 * reach * body.twist.tail<3>().norm());
+    speed = std::max(speed, body.fastestPoint(body.twist));
   }
   return speed;
 }
@@ -98,9 +105,7 @@ void Simulation::Impl::measureState(StepReport& step) const {
   }
   for (const RigidBody& body : state.bodies) {
     if (body.motion != BodyMotion::kFree) continue;
-    const Eigen::Vector3d spin = body.twist.tail<3>();
-    step.kinetic_energy +=
-        0.5 * body.mass * body.twist.head<3>().squaredNorm() + 0.5 * spin.dot(body.worldInertia() * spin);
+    step.kinetic_energy += kineticEnergy(body);
     step.potential_energy -= body.mass * scene.gravity.dot(body.p_WBcm);
   }
 }
@@ -129,13 +134,14 @@ StepReport Simulation::step() {
   double left = m.scene.time_step;
   {
     const StageClock clock(step.times.total);
+    const bool was_predicted = m.predicted;
     bool good = true;
-    std::exception_ptr thrown;
     while (good && left > 1e-9 * m.scene.time_step) {
       // As many equal sub-steps as the present speeds ask for; looked at anew after each.
       const double speed = std::max(m.bodySpeed(), m.state.liquid_speed);
       const double wanted = std::ceil(left * speed / (m.scene.solver.cfl * m.grid.h) - 1e-9);
-      const double count = std::clamp(wanted, 1.0, static_cast<double>(kLargestSubsteps));
+      const double most = std::ceil(kLargestSubsteps * left / m.scene.time_step - 1e-9);
+      const double count = std::clamp(wanted, 1.0, most);
       double dt = left / count;
       if (m.secondOrder() && m.state.substeps < kFirstParts.size()) {
         dt = std::min(dt, kFirstParts[m.state.substeps] * m.scene.time_step);
@@ -153,8 +159,9 @@ StepReport Simulation::step() {
       left -= dt;
       try {
         good = m.substep(dt, step);
-      } catch (...) {
-        thrown = std::current_exception();
+      } catch (const std::exception& error) {
+        step.status = SolveStatus::kNotConverged;
+        step.message = error.what();
         good = false;
       }
     }
@@ -168,7 +175,10 @@ StepReport Simulation::step() {
       if (step.substeps > 1) std::swap(m.state, m.before);
       m.state.mean_liquid = last_liquid;
       m.state.mean_contact = last_contact;
-      m.prepareGeometry();
+      // The surface has been extended into the bodies where they are; what is left of the solve is where they were to
+      // be.
+      m.sampler.sample(m.state.bodies, m.solids);
+      m.predicted = was_predicted;
       // Of the state, which is that of the last step.
       step.liquid_volume = m.report.liquid_volume;
       step.volume_correction = m.report.volume_correction;
@@ -177,10 +187,6 @@ StepReport Simulation::step() {
       step.liquid_momentum = m.report.liquid_momentum;
       step.maximum_speed = m.report.maximum_speed;
       m.tellModel(step.model);
-    }
-    if (thrown) {
-      omp_set_num_threads(threads_before);
-      std::rethrow_exception(thrown);
     }
   }
   step.step = m.state.step;
@@ -231,12 +237,13 @@ void Simulation::setBodyState(int body, const Eigen::Isometry3d& X_WB, const Eig
   RigidBody& moved = bodies[body];
   moved.q_WB = Eigen::Quaterniond(X_WB.linear()).normalized();
   moved.p_WBcm = X_WB.translation() + moved.q_WB * moved.p_BBcm;
+  moved.p_WBcm = m.walls.imageInside(moved.p_WBcm);
   moved.twist.head<3>() = velocity + angular_velocity.cross(moved.p_WBcm - X_WB.translation());
   moved.twist.tail<3>() = angular_velocity;
-  if (!moved.p_WBcm.allFinite() || !moved.twist.allFinite()) {
+  if (!moved.p_WBcm.allFinite() || !moved.twist.allFinite() || !std::isfinite(kineticEnergy(moved))) {
     throw std::invalid_argument("state of '" + name + "': centre of mass at " + shownVector(moved.p_WBcm) +
                                 " m, its velocity " + shownVector(moved.twist.head<3>()) +
-                                " m/s: expected finite numbers");
+                                " m/s: expected finite numbers, the energy too");
   }
   const std::string overlaps = describeOverlaps(bodies, m.walls, kOverlapTolerance * m.grid.h, body);
   if (!overlaps.empty()) {
@@ -252,6 +259,8 @@ void Simulation::setBodyState(int body, const Eigen::Isometry3d& X_WB, const Eig
 void Simulation::setLiquidVelocity(const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& velocity) {
   FaceField<double> faces;
   setVelocity(impl_->grid, velocity, faces);
+  FaceMask everywhere = impl_->state.known;
+  extrapolateVelocity(impl_->grid.lattice, 0, impl_->noSlip(), everywhere, {&faces});  // beyond the walls
   SimulationState& state = impl_->state;
   state.coupled.velocity = std::move(faces);
   state.liquid_speed = largestSpeed(state.coupled.velocity);
@@ -264,6 +273,7 @@ std::vector<SurfacePoint> Simulation::surfacePoints() const {
 }
 
 Eigen::Vector3d Simulation::liquidVelocity(const Eigen::Vector3d& point) const {
+  if (!point.allFinite()) throw std::invalid_argument("point in the liquid: expected finite numbers");
   const MacGrid& grid = impl_->grid;
   return velocityAt(grid.lattice, impl_->state.coupled.velocity, (point - grid.origin) / grid.h);
 }

@@ -4,7 +4,8 @@
 //   Simulation simulation(loadScene("drop.yaml"));
 //   StepReport report = simulation.step();
 //
-// A step whose solve fails is not committed: the state stays as it was before, and the report says why.
+// A step whose solve fails is not committed: the state stays as it was before, and the report says why. So is one in
+// which anything throws.
 
 #include <Eigen/Geometry>
 #include <functional>
@@ -44,8 +45,8 @@ class Simulation {
 
   // Advances by scene().time_step, in as many sub-steps as the CFL number asks for.
   [[nodiscard]] StepReport step();
-  // Report of the last step; before the first its status is kNotRun. Volume and energies are those of the present state
-  // also after setBodyState().
+  // Report of the last step, committed or not; before the first its status is kNotRun. Volume and energies are those of
+  // the present state also after setBodyState().
   const StepReport& report() const;
 
   // Indexed as scene().bodies.
@@ -53,7 +54,8 @@ class Simulation {
   const std::vector<RigidBody>& bodies() const;
   // Acts on body i during the steps to come, until replaced. Throws std::invalid_argument unless finite.
   void setWrench(int body, const Wrench& wrench);
-  // Throws std::invalid_argument unless finite, inside the tank and clear of the other bodies.
+  // Throws std::invalid_argument unless finite, inside the tank and clear of the other bodies. Along periodic axes any
+  // image of the pose will do; the one in the tank is kept.
   void setBodyState(int body, const Eigen::Isometry3d& X_WB, const Eigen::Vector3d& velocity,
                     const Eigen::Vector3d& angular_velocity);
 
@@ -64,7 +66,8 @@ class Simulation {
   // Points of the free surface, about one for each cell that it crosses; empty without a free surface.
   std::vector<SurfacePoint> surfacePoints() const;
 
-  // Velocity of the liquid, m/s, at a point in W; beyond the liquid what it is continued by.
+  // Velocity of the liquid, m/s, at a point in W; beyond the liquid what it is continued by. Throws
+  // std::invalid_argument unless finite.
   Eigen::Vector3d liquidVelocity(const Eigen::Vector3d& point) const;
 
   // Back to the scene's initial state, time 0, no wrenches.

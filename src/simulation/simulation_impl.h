@@ -42,6 +42,7 @@ struct SimulationState {
   FaceMask known;
   FaceField<double> acceleration;                 // m/s^2, of the liquid's particles, mean over the last sub-step
   std::vector<Vector6d> body_acceleration;        // likewise
+  std::vector<Vector6d> stuck_twists;             // of the liquid that sticks to each body, set or not since
   std::vector<Wrench> mean_liquid, mean_contact;  // over the last output step
   double liquid_speed = 0.0;                      // m/s, no component of the velocity is larger
   double last_dt = 0.0;                           // s, of the last sub-step

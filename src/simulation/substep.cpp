@@ -13,6 +13,11 @@ namespace {
 // The first solve starts from nothing that it could correct later.
 constexpr double kFirstTolerance = 1e-4;
 constexpr double kClosingTolerance = 1e-3;  // of a cell: a gap that closes by less within a step is no impact
+// Per cell, with which the liquid's motion goes on into the air: of sqrt(gravity h), the speed of the shortest waves,
+// and of gravity. A wave of 32 cells length and an amplitude of a third of a cell has so much. Neither depends on the
+// step, which would cost an order of accuracy.
+constexpr double kSteepestVelocity = 0.03;
+constexpr double kSteepestRate = 0.15;
 constexpr double kMostIntrusion = 0.5;      // of a cell, that bodies may come into walls or each other
 // After the step of an impact one of backward Euler, for the next to continue.
 constexpr int kStepsAfterImpact = 1;
@@ -27,11 +32,13 @@ StepWeights Simulation::Impl::weights(double dt) const {
   return secondOrder() && slow && state.euler_steps == 0 ? bdf2Weights(dt, state.last_dt) : eulerWeights(dt);
 }
 
-// Whatever could touch within the step: at present speeds, and what gravity and wrenches add.
+// Whatever could touch within the step: at present speeds, also those at which the liquid may carry a light body along,
+// and what gravity and wrenches add.
 double Simulation::Impl::contactReach(double dt) const {
-  double reach = bodySpeed() + scene.gravity.norm() * dt;
-  for (const Vector6d& twist : planEuler(state.bodies, scene.gravity, wrenches, state.time, dt).free_twists) {
-    reach = std::max(reach, twist.head<3>().norm());
+  double reach = std::max(bodySpeed(), state.liquid_speed) + scene.gravity.norm() * dt;
+  const BodyPlan next = planEuler(state.bodies, scene.gravity, wrenches, state.time, dt);
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+    reach = std::max(reach, state.bodies[b].fastestPoint(next.free_twists[b]));
   }
   return std::min(2.0 * reach * dt, scene.tank.size.norm()) + 0.05 * grid.h;
 }
@@ -123,6 +130,8 @@ CoupledReport Simulation::Impl::solveWithLiquid(const StepWeights& w, const std:
     } else {
       system.assemble(solids, plan.bodies, distance, liquid.density, liquid.dynamic_viscosity, w.implicit);
     }
+    // A body that was set has left the liquid at it as it was. Then steps are of first order.
+    if (w.order == 1) system.setStuckTwists(state.stuck_twists);
   }
   {
     const StageClock clock(step.times.advection);
@@ -182,7 +191,9 @@ void Simulation::Impl::moveLiquid(const StepWeights& w, StepReport& step) {
   const auto complete = [&](const std::vector<LiquidField>& fields, FaceMask& known) {
     completeMotion(solids, grid, plan.bodies, layers, noSlip(), fields, known);
   };
-  const LiquidField velocity{&state.coupled.velocity, &state.coupled.twists};
+  const double gravity = scene.gravity.norm();
+  const LiquidField velocity{&state.coupled.velocity, &state.coupled.twists,
+                             kSteepestVelocity * std::sqrt(gravity * grid.h)};
   std::swap(scratch.known_before, state.known);
   markResolved(system.problem(), state.known);
   if (!secondOrder()) {
@@ -197,7 +208,7 @@ void Simulation::Impl::moveLiquid(const StepWeights& w, StepReport& step) {
       }
     }
     // Known where the velocity was before and is now: everywhere, as a rule.
-    const LiquidField rate{&acceleration, &state.body_acceleration};
+    const LiquidField rate{&acceleration, &state.body_acceleration, kSteepestRate * gravity};
     if (intersect(state.known, scratch.known_before, scratch.known)) {
       complete({velocity}, state.known);
       complete({rate}, scratch.known);
@@ -282,6 +293,8 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
 
   takeMeans(w, scratch.other.liquid);
   state.bodies = std::move(moved);
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) state.stuck_twists[b] = state.bodies[b].twist;
+  for (RigidBody& body : state.bodies) body.p_WBcm = walls.imageInside(body.p_WBcm);
   const bool impact = std::find(closing.begin(), closing.end(), 1) != closing.end();
   state.euler_steps = impact ? kStepsAfterImpact : std::max(0, state.euler_steps - 1);
   state.last_dt = dt;

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "scene/solid_body.h"
 #include "simulation/contact_laws.h"
@@ -126,6 +128,96 @@ TEST(ModelSelection, LeavingOutTheStressBlockChangesTheAnswerByNoMoreThanItsSize
   EXPECT_TRUE(with.model.viscosity);
   EXPECT_FALSE(without.model.viscosity);
   EXPECT_LT((a.bodies()[0].twist - b.bodies()[0].twist).norm(), 1e-6 * b.bodies()[0].twist.norm());
+}
+
+// Two bodies in a dry tank without gravity: `first` comes from the left at 1 m/s, or does not move; `second` is at
+// rest.
+Scene meeting(BodyDescription first, BodyDescription second) {
+  Scene scene;
+  scene.source = "test";
+  scene.tank.size = {2.0, 1.0, 1.0};
+  scene.tank.cell_width = 0.05;
+  scene.gravity.setZero();
+  scene.time_step = 0.02;
+  scene.bodies = {std::move(first), std::move(second)};
+  return scene;
+}
+
+// Nothing acts on the bodies but the contact.
+TEST(Contact, ABodyThatIsPushedWhereNothingElseActsGoesAlong) {
+  BodyDescription pusher = boxBody("pusher", {0.2, 0.2, 0.2}, 1000.0, {0.5, 0.5, 0.5});
+  pusher.motion = BodyMotion::kPrescribed;
+  pusher.prescribed.twist[0] = 0.1;
+  for (const SolverName solver : {SolverName::kFast, SolverName::kDirect, SolverName::kReference}) {
+    Scene scene = meeting(pusher, boxBody("pushed", {0.2, 0.2, 0.2}, 1000.0, {0.702, 0.5, 0.5}));
+    scene.solver.name = solver;
+    Simulation simulation(scene);
+    for (int i = 0; i < 10; ++i) {
+      const StepReport r = simulation.step();
+      ASSERT_TRUE(r.committed()) << r.message;
+    }
+    EXPECT_NEAR(simulation.bodyStates()[1].velocity[0], 0.1, 1e-3) << static_cast<int>(solver);
+  }
+}
+
+// The bar is at rest when contacts are looked for, and turns through the block within the step.
+TEST(Contact, IsFoundWhereATorqueOnlyBeginsToTurnABody) {
+  BodyDescription block = boxBody("block", {0.05, 0.2, 0.2}, 1000.0, {1.18, 0.5, 0.535});
+  block.motion = BodyMotion::kFixed;
+  Scene scene = meeting(boxBody("bar", {0.4, 0.05, 0.05}, 1000.0, {1.0, 0.5, 0.39}), block);
+  Simulation simulation(scene);
+  Wrench turn;
+  turn.torque[1] = -1500.0 * scene.bodies[0].inertia_Bcm(1, 1);
+  simulation.setWrench(0, turn);
+  int contacts = 0;
+  double penetration = 0.0;
+  for (int i = 0; i < 5; ++i) {
+    const StepReport r = simulation.step();
+    if (!r.committed()) break;  // it says so
+    contacts = std::max(contacts, r.model.contacts);
+    penetration = std::max(penetration, r.penetration);
+  }
+  EXPECT_GT(contacts, 0);
+  EXPECT_LT(penetration, 0.5 * scene.tank.cell_width);
+}
+
+// How fast it takes back what it is inside another does not depend on the step, and hardly stays.
+TEST(Contact, ABodySetIntoTheFloorRisesWithoutAJump) {
+  for (const double dt : {0.0005, 0.002, 0.02}) {
+    Scene scene = meeting(boxBody("box", {0.2, 0.2, 0.2}, 1000.0, {1.0, 0.5, 0.099}),
+                          boxBody("far", {0.1, 0.1, 0.1}, 1000.0, {0.3, 0.5, 0.5}));
+    scene.gravity = {0.0, 0.0, -9.81};
+    scene.time_step = dt;
+    Simulation simulation(scene);
+    double highest = 0.0;
+    while (simulation.time() < 0.2) {
+      ASSERT_TRUE(simulation.step().committed());
+      highest = std::max(highest, simulation.bodyStates()[0].X_WB.translation()[2]);
+    }
+    EXPECT_LT(highest, 0.1 + 3e-4) << dt;
+  }
+}
+
+// Poses are those of the images in the tank, so that bodies meet in it however far they have come.
+TEST(Contact, IsThereAfterALapAlongAPeriodicAxis) {
+  BodyDescription ball = sphereBody("ball", 0.1, 1000.0, {0.5, 0.5, 0.5});
+  ball.velocity[0] = 1.0;
+  BodyDescription post = boxBody("post", {0.1, 0.1, 0.9}, 1000.0, {0.2, 0.5, 0.5});
+  post.motion = BodyMotion::kFixed;
+  Scene scene = meeting(ball, post);
+  scene.tank.periodic[0] = true;
+  Simulation simulation(scene);
+  bool met = false;
+  while (simulation.time() < 2.0) {
+    const StepReport r = simulation.step();
+    ASSERT_TRUE(r.committed()) << r.message;
+    const double x = simulation.bodyStates()[0].X_WB.translation()[0];
+    EXPECT_GE(x, 0.0);
+    EXPECT_LE(x, 2.0);
+    met = met || simulation.bodyStates()[0].contact.force.norm() > 0.0;
+  }
+  EXPECT_TRUE(met);
+  EXPECT_LT(simulation.bodyStates()[0].velocity[0], 0.01);
 }
 
 }  // namespace

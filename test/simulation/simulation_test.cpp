@@ -571,5 +571,67 @@ TEST(Simulation, ARunAfterAResetIsTheSameToTheBit) {
   for (std::size_t i = 0; i < velocities[0].size(); ++i) EXPECT_EQ(velocities[0][i], velocities[1][i]) << i;
 }
 
+// After steps of second order geometry is where bodies were to be, not where they are.
+TEST(Simulation, AStepThatFailsLeavesNoTrace) {
+  Scene scene = tank(0.08, 0.5);
+  scene.bodies.push_back(sphereBody("ball", 0.025, 400.0, {0.08, 0.08, 0.09}));
+  scene.solver.tolerance = 1e-8;
+  Simulation disturbed(scene), undisturbed(scene);
+  for (int i = 0; i < 8; ++i) {
+    ASSERT_TRUE(disturbed.step().committed());
+    ASSERT_TRUE(undisturbed.step().committed());
+  }
+  const std::vector<SurfacePoint> surface = disturbed.surfacePoints();
+  Wrench absurd;
+  absurd.force[0] = 1e305;
+  disturbed.setWrench(0, absurd);
+  for (int i = 0; i < 2; ++i) ASSERT_FALSE(disturbed.step().committed());
+  disturbed.setWrench(0, Wrench());
+  const std::vector<SurfacePoint> after = disturbed.surfacePoints();
+  ASSERT_EQ(after.size(), surface.size());
+  for (std::size_t i = 0; i < surface.size(); ++i) EXPECT_EQ(after[i].position, surface[i].position);
+  for (int i = 0; i < 7; ++i) {
+    ASSERT_TRUE(disturbed.step().committed());
+    ASSERT_TRUE(undisturbed.step().committed());
+  }
+  const Eigen::Vector3d x = disturbed.bodyStates()[0].X_WB.translation();
+  EXPECT_LT((x - undisturbed.bodyStates()[0].X_WB.translation()).norm(), 1e-8);
+}
+
+// What is too fast for any number of sub-steps gets so many and no more.
+TEST(Simulation, AStepHasABoundedNumberOfSubsteps) {
+  Scene scene = tank(0.0, 1.0);
+  scene.bodies.push_back(sphereBody("ball", 0.02, 500.0, {0.08, 0.08, 0.08}));
+  scene.bodies[0].angular_velocity[2] = 1e6;
+  Simulation simulation(scene);
+  for (int i = 0; i < 3; ++i) EXPECT_LE(simulation.step().substeps, 66);  // 64, and two of the first step
+}
+
+// Liquid that sticks to a body is not set with it: of the momentum that the body has, all is shared, none is added.
+TEST(Simulation, ABodyThatIsSetMovingInLiquidAtRestAddsNoMomentum) {
+  for (const double viscosity : {0.0, 0.1, 100.0}) {
+    Scene scene = tank(0.16, viscosity);
+    for (bool& periodic : scene.tank.periodic) periodic = true;
+    scene.gravity.setZero();
+    scene.time_step = 0.02;
+    scene.bodies.push_back(sphereBody("ball", 0.035, 300.0, {0.08, 0.08, 0.08}));
+    scene.bodies[0].velocity[0] = 0.5;
+    const double momentum = 0.5 * scene.bodies[0].mass;
+    Simulation simulation(scene);
+    const StepReport r = simulation.step();
+    ASSERT_TRUE(r.committed()) << r.message;
+    const double after = r.liquid_momentum[0] + scene.bodies[0].mass * simulation.bodyStates()[0].velocity[0];
+    EXPECT_NEAR(after, momentum, 0.02 * momentum) << viscosity;
+  }
+}
+
+TEST(Simulation, LiquidThatIsGivenASpeedHasItUpToTheWalls) {
+  Simulation simulation(tank(0.16, 0.0));
+  simulation.setLiquidVelocity([](const Eigen::Vector3d&) { return Eigen::Vector3d(0.0, 0.3, 0.0); });
+  EXPECT_NEAR(simulation.liquidVelocity({0.001, 0.08, 0.08})[1], 0.3, 1e-12);
+  EXPECT_NEAR(simulation.liquidVelocity({0.08, 0.08, 0.159})[1], 0.3, 1e-12);
+  EXPECT_THROW((void)simulation.liquidVelocity({NAN, 0.0, 0.0}), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace monolith

@@ -1,0 +1,126 @@
+// The free surface, through whole simulations: nothing feeds it energy, and at rest it stays so.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/solid_body.h"
+#include "simulation/simulation.h"
+
+namespace monolith {
+namespace {
+
+using Eigen::Vector3d;
+
+// Water in a tank of nx x ny x nz cells of width h, its corner at the origin.
+Scene water(const Vector3d& cells, double h) {
+  Scene scene;
+  scene.source = "test";
+  scene.tank.size = h * cells;
+  scene.tank.cell_width = h;
+  scene.liquid.density = 1000.0;
+  scene.liquid.dynamic_viscosity = 0.001;
+  scene.time_step = 0.02;
+  return scene;
+}
+
+BodyDescription fixed(BodyDescription body, double pitch = 0.0) {
+  body.motion = BodyMotion::kFixed;
+  body.X_WB.rotate(Eigen::AngleAxisd(pitch, Vector3d::UnitY()));
+  return body;
+}
+
+// A jet rises along the far wall and falls back: thin sheets, in which no pressure holds the liquid back.
+TEST(Surface, ADamThatBreaksGainsNoEnergy) {
+  for (const double dt : {0.02, 0.005}) {
+    Scene scene = water({32, 8, 20}, 0.0125);
+    scene.time_step = dt;
+    scene.liquid.boxes = {Eigen::AlignedBox3d(Vector3d::Zero(), Vector3d(0.12, 0.1, 0.15))};
+    Simulation simulation(scene);
+    const double energy = simulation.report().potential_energy;
+    const double fall = std::sqrt(2.0 * 9.81 * 0.15);
+    while (simulation.time() < 1.2) {
+      const StepReport r = simulation.step();
+      ASSERT_TRUE(r.committed()) << r.message;
+      ASSERT_LT(r.kinetic_energy + r.potential_energy, 1.01 * energy) << dt << ", " << r.time;
+      ASSERT_LT(r.maximum_speed, 4.0 * fall) << dt << ", " << r.time;
+    }
+  }
+}
+
+// Without surface tension nothing makes the surface meet a solid at an angle of its own.
+TEST(Surface, StaysStillWhereSolidsSlantOutOfIt) {
+  const std::vector<BodyDescription> solids = {
+      fixed(sphereBody("high", 0.04, 500.0, {0.12, 0.12, 0.14})),
+      fixed(sphereBody("low", 0.04, 500.0, {0.12, 0.12, 0.1})),
+      fixed(boxBody("pitched", {0.08, 0.06, 0.1}, 500.0, {0.12, 0.12, 0.12}), 0.6)};
+  for (const BodyDescription& solid : solids) {
+    for (const double level : {0.12, 0.1237}) {
+      Scene scene = water({24, 24, 24}, 0.01);
+      scene.liquid.fill_level = level;
+      scene.bodies = {solid};
+      Simulation simulation(scene);
+      for (int i = 0; i < 25; ++i) {
+        const StepReport r = simulation.step();
+        ASSERT_TRUE(r.committed()) << r.message;
+        ASSERT_LT(r.maximum_speed, 1e-3) << solid.name << ", " << level << ", " << r.time;
+      }
+    }
+  }
+}
+
+TEST(Surface, ALightBallComesToRest) {
+  Scene scene = water({20, 20, 24}, 0.01);
+  scene.liquid.dynamic_viscosity = 0.1;
+  scene.liquid.fill_level = 0.12;
+  scene.bodies = {sphereBody("ball", 0.035, 100.0, {0.1, 0.1, 0.14})};
+  Simulation simulation(scene);
+  StepReport r;
+  while (simulation.time() < 6.0) {
+    r = simulation.step();
+    ASSERT_TRUE(r.committed()) << r.message;
+  }
+  EXPECT_LT(r.maximum_speed, 0.02);
+  EXPECT_LT(simulation.bodyStates()[0].velocity.norm(), 0.01);
+}
+
+// Liquid that lies across a periodic boundary is the same as any other.
+TEST(Surface, ABoxOfLiquidFallsAsItDoesElsewhereAcrossAPeriodicBoundary) {
+  std::vector<double> energies;
+  for (const bool across : {false, true}) {
+    Scene scene = water({20, 8, 16}, 0.02);
+    scene.tank.periodic[0] = true;
+    if (across) {
+      scene.liquid.boxes = {Eigen::AlignedBox3d(Vector3d(0.0, 0.0, 0.0), Vector3d(0.1, 0.16, 0.2)),
+                            Eigen::AlignedBox3d(Vector3d(0.3, 0.0, 0.0), Vector3d(0.4, 0.16, 0.2))};
+    } else {
+      scene.liquid.boxes = {Eigen::AlignedBox3d(Vector3d(0.1, 0.0, 0.0), Vector3d(0.3, 0.16, 0.2))};
+    }
+    Simulation simulation(scene);
+    EXPECT_NEAR(simulation.report().liquid_volume, 0.2 * 0.16 * 0.2, 1e-3 * 0.2 * 0.16 * 0.2) << across;
+    while (simulation.time() < 0.1) ASSERT_TRUE(simulation.step().committed());
+    energies.push_back(simulation.report().kinetic_energy);
+  }
+  EXPECT_GT(energies[0], 0.1);
+  EXPECT_NEAR(energies[1], energies[0], 1e-3 * energies[0]);
+}
+
+// The level set of what fills a tank that has no lid: its top is a surface.
+TEST(Surface, LiquidHasATopAlsoWhereTheTankIsPeriodicUpwards) {
+  Scene scene = water({8, 8, 16}, 0.02);
+  scene.tank.periodic[2] = true;
+  scene.gravity.setZero();
+  scene.liquid.fill_level = 0.16;
+  Simulation simulation(scene);
+  const double volume = 0.16 * 0.16 * 0.16;
+  for (int i = 0; i < 5; ++i) {
+    const StepReport r = simulation.step();
+    ASSERT_TRUE(r.committed()) << r.message;
+    EXPECT_NEAR(r.liquid_volume, volume, 1e-6 * volume);
+    EXPECT_LT(r.maximum_speed, 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace monolith
