@@ -21,6 +21,7 @@ using Eigen::Vector3i;
 constexpr double kPadding = 4.0;           // resolutions outside the bounding box of the mesh
 constexpr double kLeastCellsAcross = 8.0;  // of a mesh's thinnest extent ...
 constexpr double kMostSamples = 2e6;       // ... unless that costs more memory than this
+constexpr double kSamplesAtAll = 1e8;      // nor the wanted resolution more than this
 
 class GridDistance : public SignedDistance {
  public:
@@ -124,6 +125,7 @@ double chooseSpacing(const AlignedBox3d& bounds, double resolution) {
   while (spacing < resolution && sampleCount(bounds, resolution, spacing).cast<double>().prod() > kMostSamples) {
     spacing = std::min(resolution, 1.2 * spacing);
   }
+  while (sampleCount(bounds, resolution, spacing).cast<double>().prod() > kSamplesAtAll) spacing *= 1.2;
   return spacing;
 }
 

@@ -100,6 +100,9 @@ Quaterniond readOrientation(const YAML::Node& node, const std::string& path, Vio
 
 void readMotion(const YamlMap& map, BodyDescription& body, Violations& violations) {
   map.read("material", body.material);
+  if (body.material == kWallsName) {
+    map.fail("material", "another name, \"walls\" is the tank's own in contact.pairs");
+  }
   const std::string motion = map.readWord("motion", "free", {"free", "fixed", "prescribed"});
   if (motion == "fixed") body.motion = BodyMotion::kFixed;
   if (motion == "prescribed") body.motion = BodyMotion::kPrescribed;

@@ -53,6 +53,14 @@ void readContact(const YAML::Node& node, const std::vector<BodyDescription>& bod
       entry.fail("between", "names of bodies or materials of this scene, or \"walls\"; the nearest to " + name + " is " +
                                 nearestWord(name, names));
     }
+    const bool body = std::any_of(bodies.begin(), bodies.end(), [&](const auto& b) { return b.name == pair.a; });
+    if (pair.a == pair.b && (body || pair.a == kWallsName)) {
+      entry.fail("between", "two that can touch, not one thing and itself");
+    }
+    const bool repeats = std::any_of(contact.pairs.begin(), contact.pairs.end(), [&](const auto& other) {
+      return (other.a == pair.a && other.b == pair.b) || (other.a == pair.b && other.b == pair.a);
+    });
+    if (repeats) entry.fail("between", "a pair that no entry before has");
     contact.pairs.push_back(pair);
   }
 }

@@ -26,6 +26,29 @@ MassProperties combined(const std::vector<MassProperties>& parts) {
   return whole;
 }
 
+namespace {
+
+constexpr double kLeastMoment = 1e-12;  // of the largest; less is zero
+
+// may_vanish: moments of zero will do.
+std::string inertiaViolation(const Eigen::Matrix3d& inertia, bool may_vanish) {
+  if (!inertia.allFinite()) return "inertia is not finite: expected finite moments";
+  const Eigen::Vector3d moments =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
+  std::ostringstream text;
+  text << "principal moments of inertia " << moments[0] << ", " << moments[1] << ", " << moments[2] << " kg m^2: ";
+  const double round_off = kLeastMoment * moments.cwiseAbs().maxCoeff();
+  if (may_vanish ? moments[0] < -round_off : !(moments[0] > round_off)) {
+    return text.str() + (may_vanish ? "expected none below zero" : "expected a positive definite inertia");
+  }
+  if (moments[0] + moments[1] < moments[2] * (1.0 - 1e-6)) {
+    return text.str() + "expected each to be at most the sum of the other two (triangle inequality)";
+  }
+  return std::string();
+}
+
+}  // namespace
+
 std::string massViolation(const MassProperties& properties) {
   std::ostringstream text;
   if (!std::isfinite(properties.mass) || !(properties.mass > 0.0)) {
@@ -33,19 +56,14 @@ std::string massViolation(const MassProperties& properties) {
     return text.str();
   }
   if (!properties.centre.allFinite()) return "centre of mass is not finite: expected finite coordinates";
-  if (!properties.inertia.allFinite()) return "inertia is not finite: expected finite moments";
-  const Eigen::Vector3d moments =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(properties.inertia, Eigen::EigenvaluesOnly).eigenvalues();
-  text << "principal moments of inertia " << moments[0] << ", " << moments[1] << ", " << moments[2] << " kg m^2: ";
-  if (!(moments[0] > 1e-12 * moments[2])) {
-    text << "expected a positive definite inertia";
-    return text.str();
+  return inertiaViolation(properties.inertia, false);
+}
+
+std::string partViolation(const MassProperties& properties) {
+  if (properties.mass == 0.0 && !properties.inertia.isZero(0.0)) {
+    return "mass 0 kg with an inertia: expected a mass > 0, or no inertia";
   }
-  if (moments[0] + moments[1] < moments[2] * (1.0 - 1e-6)) {
-    text << "expected each to be at most the sum of the other two (triangle inequality)";
-    return text.str();
-  }
-  return std::string();
+  return inertiaViolation(properties.inertia, true);
 }
 
 }  // namespace monolith

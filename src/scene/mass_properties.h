@@ -22,5 +22,7 @@ MassProperties combined(const std::vector<MassProperties>& parts);
 // What keeps it from being a rigid body, with the values and what was expected; empty if nothing does.
 // Principal moments: positive, each at most the sum of the other two (relative slack 1e-6).
 std::string massViolation(const MassProperties& properties);
+// Likewise from being a part of one, which may also be a point, a rod or nothing: mass or moments of zero.
+std::string partViolation(const MassProperties& properties);
 
 }  // namespace monolith

@@ -6,6 +6,7 @@
 
 #include <assimp/Importer.hpp>
 #include <cmath>
+#include <sstream>
 
 #include "geometry/mesh.h"
 #include "scene/scene.h"
@@ -15,6 +16,8 @@ namespace {
 
 // Of the mesh's diagonal. STL and OBJ files hold float coordinates, some of them printed with six digits.
 constexpr double kWeldTolerance = 2e-6;
+// m, of a mesh's diagonal: beyond, somebody has mistaken the scale.
+constexpr double kLeastAcross = 1e-6, kMostAcross = 1e6;
 
 void appendNode(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent, TriangleMesh& mesh) {
   const aiMatrix4x4 transform = parent * node.mTransformation;
@@ -73,6 +76,13 @@ TriangleMesh loadMeshFile(const std::string& path, const Eigen::Vector3d& scale)
     if (!vertex.allFinite()) throw SceneError(path + ": a vertex is not finite: expected finite coordinates");
   }
   if (mesh.triangles.empty()) throw SceneError(path + ": no triangles: expected a triangle mesh");
+  const double across = vertexBounds(mesh).diagonal().norm();
+  if (!(across >= kLeastAcross && across <= kMostAcross)) {
+    std::ostringstream text;
+    text << path << ": " << across << " m across, by its scale: expected " << kLeastAcross << " to " << kMostAcross
+         << " m";
+    throw SceneError(text.str());
+  }
   mesh = weldVertices(mesh, kWeldTolerance * vertexBounds(mesh).diagonal().norm());
   requireSolid(mesh);
   double enclosed = signedVolume(mesh);

@@ -13,9 +13,18 @@ using Eigen::Vector3d;
 
 constexpr double kCellTolerance = 1e-6;  // of a cell
 constexpr int kLeastCells = 4;           // along an axis
+constexpr double kFarthestCells = 1e9;   // of the origin: beyond, a cell is lost in the round-off of positions
 constexpr double kBytesPerCell = 1700.0;  // at the peak of a step, viscous, one body: ./tank bench
 
 char axisName(int axis) { return "xyz"[axis]; }
+
+// Whether cells of the tank have their centres between `least` and `most`. Not on them: the surface is no liquid.
+bool holdsCentre(const TankDescription& tank, const Vector3d& least, const Vector3d& most) {
+  const auto cells = [&](const Vector3d& x) -> Eigen::Array3d {
+    return (x - tank.origin).array() / tank.cell_width - 0.5;
+  };
+  return (cells(least).floor() + 1.0 < cells(most).ceil()).all();
+}
 
 // Sets the size to the whole number of cells it is within round-off of.
 bool fitCells(const YamlMap& map, TankDescription& tank) {
@@ -55,6 +64,11 @@ bool readTank(const YAML::Node& node, TankDescription& tank, Violations& violati
   if (violations.count() > violations_before || !fitCells(map, tank)) return false;
   tank.origin = Vector3d(-0.5 * tank.size.x(), -0.5 * tank.size.y(), 0.0);
   map.read<3>("origin", tank.origin);
+  if (!(tank.origin.cwiseAbs().maxCoeff() <= kFarthestCells * tank.cell_width)) {
+    std::ostringstream text;
+    text << "coordinates of at most " << kFarthestCells * tank.cell_width << " m, 1e9 cells";
+    map.fail("origin", text.str());
+  }
   return violations.count() == violations_before;
 }
 
@@ -84,6 +98,9 @@ void readLiquid(const YAML::Node& node, const TankDescription& tank, bool tank_u
   if (tank_usable && liquid.fill_level > tank.size.z() + tolerance) {
     map.fail("fill_level", "at most the height of the tank, " + std::to_string(tank.size.z()) + " m");
   }
+  if (tank_usable && liquid.fill_level > 0.0 && liquid.fill_level <= 0.5 * tank.cell_width) {
+    map.fail("fill_level", "0, or more than half a cell, " + std::to_string(0.5 * tank.cell_width) + " m");
+  }
   if (!map.has("boxes")) return;
   if (!map.get("boxes").IsSequence()) return map.fail("boxes", "a list of {min: [x, y, z], max: [x, y, z]}");
   const Eigen::AlignedBox3d inside(tank.origin - Vector3d::Constant(tolerance),
@@ -104,6 +121,13 @@ void readLiquid(const YAML::Node& node, const TankDescription& tank, bool tank_u
       std::ostringstream text;
       text << path << ": value " << shownValue(boxes[i]) << ": expected a box inside the tank, from "
            << shownVector(tank.origin) << " to " << shownVector(tank.origin + tank.size);
+      violations.add(boxes[i], text.str());
+    }
+    if (tank_usable && violations.count() == violations_before && !holdsCentre(tank, least, most)) {
+      std::ostringstream text;
+      text << path << ": value " << shownValue(boxes[i])
+           << ": expected a box that holds the centre of a cell, of which "
+           << "the width is " << tank.cell_width << " m";
       violations.add(boxes[i], text.str());
     }
     liquid.boxes.emplace_back(least, most);

@@ -20,6 +20,8 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
+constexpr int kDeepest = 1000;
+
 Vector3d toEigen(const urdf::Vector3& v) { return Vector3d(v.x, v.y, v.z); }
 
 Isometry3d toEigen(const urdf::Pose& pose) {
@@ -55,7 +57,8 @@ class BodyReader {
     body_.links.clear();
     try {
       const urdf::ModelInterfaceSharedPtr model = parseUrdf(urdf_.xml, urdf_.source);
-      visit(*model->getRoot(), Isometry3d::Identity());
+      visit(*model->getRoot(), Isometry3d::Identity(), 0);
+      requireOneTree(*model);
       finish(model->getName());
     } catch (const SceneError& error) {
       errors_.push_back(error.what());
@@ -65,7 +68,15 @@ class BodyReader {
   }
 
  private:
-  void visit(const urdf::Link& link, const Isometry3d& X_BL) {
+  void visit(const urdf::Link& link, const Isometry3d& X_BL, int depth) {
+    if (!visited_.insert(link.name).second) {
+      return fail("link \"" + link.name + "\" is the child of two joints, or of one that hangs on itself",
+                  "expected one tree of links");
+    }
+    if (depth > kDeepest) {
+      return fail("link \"" + link.name + "\" is more than " + std::to_string(kDeepest) + " joints from the root",
+                  "expected a shorter chain");
+    }
     body_.links.push_back({link.name, X_BL});
     if (link.inertial) addInertial(link, X_BL);
     for (std::size_t i = 0; i < link.collision_array.size(); ++i) {
@@ -82,7 +93,16 @@ class BodyReader {
       }
     }
     for (const urdf::LinkSharedPtr& child : link.child_links) {
-      visit(*child, X_BL * toEigen(child->parent_joint->parent_to_joint_origin_transform));
+      visit(*child, X_BL * toEigen(child->parent_joint->parent_to_joint_origin_transform), depth + 1);
+    }
+  }
+
+  void requireOneTree(const urdf::ModelInterface& model) {
+    if (!errors_.empty()) return;
+    for (const auto& [name, link] : model.links_) {
+      if (visited_.count(name) > 0) continue;
+      fail("link \"" + name + "\" does not hang on the root, \"" + model.getRoot()->name + "\"",
+           "expected one tree of links");
     }
   }
 
@@ -95,6 +115,8 @@ class BodyReader {
         inertial.ixz, inertial.iyz, inertial.izz;
     if (!std::isfinite(part.mass) || part.mass < 0.0) {
       fail("link \"" + link.name + "\" inertial: mass " + std::to_string(part.mass) + " kg", "expected a mass >= 0");
+    } else if (const std::string violation = partViolation(part); !violation.empty()) {
+      errors_.push_back(urdf_.source + ": link \"" + link.name + "\" inertial: " + violation);
     }
     parts_.push_back(transformed(part, X_BL * toEigen(inertial.origin)));
   }
@@ -197,6 +219,7 @@ class BodyReader {
   const SceneResolver& resolver_;
   BodyDescription& body_;
   std::vector<MassProperties> parts_;
+  std::set<std::string> visited_;
   std::set<std::string> mesh_files_;
   std::vector<std::string> errors_;
 };

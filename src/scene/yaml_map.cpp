@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "scene/nearest_word.h"
@@ -134,11 +135,13 @@ void YamlMap::read(const std::string& key, double& out, Range range) const {
 void YamlMap::read(const std::string& key, int& out, int least) const {
   if (!has(key)) return;
   const YAML::Node node = get(key);
-  int value;
-  if (!node.IsScalar() || !YAML::convert<int>::decode(node, value) || value < least) {
-    return fail(key, "a whole number >= " + std::to_string(least));
+  double value;
+  if (!toNumber(node, value) || value != std::floor(value) || value < least ||
+      value > std::numeric_limits<int>::max()) {
+    return fail(
+        key, "a whole number from " + std::to_string(least) + " to " + std::to_string(std::numeric_limits<int>::max()));
   }
-  out = value;
+  out = static_cast<int>(value);
 }
 
 void YamlMap::read(const std::string& key, std::string& out) const {
