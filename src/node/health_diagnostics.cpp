@@ -10,7 +10,7 @@ namespace {
 constexpr double kRealTime = 0.95;         // a paced run below this factor is too slow
 constexpr double kVolumeTolerance = 0.01;  // of the initial volume
 
-double wallNow() { return ros::WallTime::now().toSec(); }
+double wallNow() { return ros::SteadyTime::now().toSec(); }
 
 }  // namespace
 

@@ -31,14 +31,14 @@ StatePublisher::StatePublisher(ros::NodeHandle& global, ros::NodeHandle& local, 
       simulation_(simulation),
       world_frame_(options.world_frame),
       owns_clock_(ros::Time::isSimTime()),
-      state_gate_(options.state_rate, simulation.scene().time_step),
-      surface_gate_(options.surface_rate, simulation.scene().time_step),
-      statistics_gate_(options.statistics_rate, simulation.scene().time_step),
-      marker_gate_(options.marker_rate, simulation.scene().time_step) {
+      state_rhythm_{PublishGate(options.state_rate, simulation.scene().time_step)},
+      surface_rhythm_{PublishGate(options.surface_rate, simulation.scene().time_step)},
+      statistics_rhythm_{PublishGate(options.statistics_rate, simulation.scene().time_step)},
+      marker_rhythm_{PublishGate(options.marker_rate, simulation.scene().time_step)} {
   if (owns_clock_) clock_ = global.advertise<rosgraph_msgs::Clock>("/clock", kQueueSize);
-  tf_ = global.advertise<tf2_msgs::TFMessage>("/tf", kQueueSize);
-  tf_static_ = global.advertise<tf2_msgs::TFMessage>("/tf_static", 1, true);
   // Latched: whoever comes while the simulation is paused sees where it stands.
+  tf_ = global.advertise<tf2_msgs::TFMessage>("/tf", kQueueSize, true);
+  tf_static_ = global.advertise<tf2_msgs::TFMessage>("/tf_static", 1, true);
   states_ = local.advertise<monolith_tank::BodyStates>("body_states", kQueueSize, true);
   surface_ = local.advertise<sensor_msgs::PointCloud2>("surface", kLargeQueueSize, true);
   statistics_ = local.advertise<monolith_tank::Statistics>("statistics", kQueueSize, true);
@@ -93,17 +93,23 @@ void StatePublisher::publishConstant() {
   tf_static_.publish(frames);
 }
 
-void StatePublisher::publish(const StepReport& report, double real_time_factor, bool all) {
+void StatePublisher::publish(const StepReport& report, double real_time_factor, What what) {
   publishClock();
   const std::vector<BodyState> states = simulation_.bodyStates();
-  if (all || state_gate_.isDue(report.step)) {
+  const auto isWanted = [&](Rhythm& rhythm) {
+    const bool wanted = what == What::kAll ||
+                        (what == What::kMissing ? rhythm.last_step != report.step : rhythm.gate.isDue(report.step));
+    if (wanted) rhythm.last_step = report.step;
+    return wanted;
+  };
+  if (isWanted(state_rhythm_)) {
     publishTransforms(states);
     publishStates(states);
     publishOdometry(states);
   }
-  if (all || marker_gate_.isDue(report.step)) publishMarkers(states);
-  if (all || surface_gate_.isDue(report.step)) publishSurface();
-  if (all || statistics_gate_.isDue(report.step)) publishStatistics(report, real_time_factor);
+  if (isWanted(marker_rhythm_)) publishMarkers(states);
+  if (isWanted(surface_rhythm_)) publishSurface();
+  if (isWanted(statistics_rhythm_)) publishStatistics(report, real_time_factor);
 }
 
 void StatePublisher::publishClock() {
@@ -180,6 +186,7 @@ void StatePublisher::publishStatistics(const StepReport& report, double real_tim
   monolith_tank::Statistics message = toStatistics(report, real_time_factor);
   message.header = header();
   statistics_.publish(message);
+  statistics_rhythm_.last_step = report.step;  // also of a step that has failed
 }
 
 std::vector<std::string> StatePublisher::topicsWithoutSubscriber() const {

@@ -24,8 +24,9 @@ class StatePublisher {
 
   // What never changes: tank, link frames, URDF texts.
   void publishConstant();
-  // After a step, or the initial state: what is due. `all` publishes regardless of the rates.
-  void publish(const StepReport& report, double real_time_factor, bool all);
+  // The state that there is: what is due by its rate, what has not been published of this step yet, or all.
+  enum class What { kDue, kMissing, kAll };
+  void publish(const StepReport& report, double real_time_factor, What what);
   void publishStatistics(const StepReport& report, double real_time_factor);
   void publishClock();
   // This process's own ros::Time, where the node owns the clock: /clock comes back to it late.
@@ -48,7 +49,12 @@ class StatePublisher {
   const Simulation& simulation_;
   std::string world_frame_;
   bool owns_clock_;
-  PublishGate state_gate_, surface_gate_, statistics_gate_, marker_gate_;
+  // When a topic, or several at once, is published, and the step of which it last was.
+  struct Rhythm {
+    PublishGate gate;
+    long last_step = -1;
+  };
+  Rhythm state_rhythm_, surface_rhythm_, statistics_rhythm_, marker_rhythm_;
   ros::Publisher clock_, tf_, tf_static_, states_, surface_, statistics_, markers_, tank_;
   std::vector<ros::Publisher> odometry_;
   std::vector<std::vector<BodyMarker>> body_markers_;

@@ -7,7 +7,11 @@ constexpr double kIdleSec = 0.02;      // between looks at the queue while pause
 constexpr double kHeartbeatSec = 0.1;  // between repetitions of /clock while time stands still
 constexpr double kSubscriberTimeoutSec = 20.0;
 constexpr double kLingerSec = 0.5;  // for the last messages to leave before the node does
+// So much earlier than the first poses of a new run /clock tells that time has jumped back: listeners of tf then forget
+// the old run's poses, and would not if these came first.
+constexpr double kClockLeadSec = 0.1;
 constexpr std::uint32_t kMostSteps = 100000;
+constexpr double kRoundOff = 1e-6;  // of a step
 
 double wallNow() { return ros::SteadyTime::now().toSec(); }
 
@@ -47,7 +51,7 @@ TankNode::TankNode(ros::NodeHandle& global, ros::NodeHandle& local, ros::Callbac
 bool TankNode::run() {
   if (options_.wait_for_subscribers) waitForSubscribers();
   publisher_.publishConstant();
-  publisher_.publish(control_.simulation().report(), 0.0, true);
+  publisher_.publish(control_.simulation().report(), 0.0, StatePublisher::What::kAll);
   setPaused(health_.paused);  // unless a caller has asked for something else by now
   // A bounded run has nobody who would unpause it: a failed step ends it.
   const auto hasFailed = [this] { return options_.duration > 0.0 && health_.failed; };
@@ -69,8 +73,8 @@ bool TankNode::run() {
 }
 
 void TankNode::serve(double wall_sec) {
-  if (ros::WallTime::now() - last_heartbeat_ > ros::WallDuration(kHeartbeatSec)) {
-    last_heartbeat_ = ros::WallTime::now();
+  if (wallNow() - last_heartbeat_wall_sec_ > kHeartbeatSec) {
+    last_heartbeat_wall_sec_ = wallNow();
     publisher_.publishClock();
   }
   queue_.callAvailable(ros::WallDuration(std::min(wall_sec, kHeartbeatSec)));
@@ -99,9 +103,9 @@ void TankNode::linger() {
 }
 
 bool TankNode::isFinished() const {
-  // Half a step of slack: the time is a sum of steps.
+  // The duration is rounded up to whole steps, but for round-off.
   return options_.duration > 0.0 &&
-         control_.simulation().time() >= options_.duration - 0.5 * control_.simulation().scene().time_step;
+         control_.simulation().time() >= options_.duration - kRoundOff * control_.simulation().scene().time_step;
 }
 
 bool TankNode::advance() {
@@ -122,17 +126,19 @@ bool TankNode::advance() {
   if (health_.initial_volume == 0.0) health_.initial_volume = health_.report.liquid_volume;
   factor_.add(wallNow(), control_.simulation().time());
   health_.real_time_factor = factor_.value();
-  publisher_.publish(health_.report, health_.real_time_factor, isFinished());
+  publisher_.publish(health_.report, health_.real_time_factor,
+                     isFinished() ? StatePublisher::What::kAll : StatePublisher::What::kDue);
   if (progress_) progress_->show(control_.simulation().time(), health_.real_time_factor);
   return true;
 }
 
 void TankNode::stateChanged() {
   health_.report = control_.simulation().report();
-  publisher_.publish(health_.report, factor_.value(), true);
+  publisher_.publish(health_.report, factor_.value(), StatePublisher::What::kAll);
 }
 
 void TankNode::setPaused(bool paused) {
+  if (paused) publisher_.publish(health_.report, health_.real_time_factor, StatePublisher::What::kMissing);
   health_.paused = paused;
   pacer_.restart(wallNow(), control_.simulation().time());
   factor_.restart();
@@ -168,7 +174,9 @@ bool TankNode::reset(std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
   health_.report = control_.simulation().report();
   health_.failed = false;
   health_.initial_volume = 0.0;
-  publisher_.publish(health_.report, 0.0, true);
+  publisher_.publishClock();
+  ros::WallDuration(kClockLeadSec).sleep();
+  publisher_.publish(health_.report, 0.0, StatePublisher::What::kAll);
   setPaused(health_.paused);
   return true;
 }

@@ -67,7 +67,7 @@ class TankNode {
   RealTimePacer pacer_;
   RealTimeFactor factor_;
   NodeHealth health_;
-  ros::WallTime last_heartbeat_;
+  double last_heartbeat_wall_sec_ = -1e9;
 };
 
 }  // namespace monolith
