@@ -26,6 +26,39 @@ from tank_client import (NODE, BodyStates, Collector, Tank, allFinite, pose, sta
 STEP_SEC = 0.02
 NAN = float('nan')
 HUGE = 1.79e308
+# What shows where the simulation stands. All of it latched.
+STATE_TOPICS = [('/tf', TFMessage), (NODE + '/body_states', BodyStates), (NODE + '/ball/odom', Odometry),
+                (NODE + '/probe/odom', Odometry), (NODE + '/surface', PointCloud2), (NODE + '/statistics', Statistics),
+                (NODE + '/markers', MarkerArray)]
+
+
+def stampOf(message):
+    """Of its first part, where a message has no header of its own."""
+    if isinstance(message, TFMessage):
+        return message.transforms[0].header.stamp
+    if isinstance(message, MarkerArray):
+        return message.markers[0].header.stamp
+    return message.header.stamp
+
+
+class Listener:
+    """What tf2_ros::TransformListener holds, of which there is no Python here: the latest transform of each frame by
+    stamp, the first of those with the same one, all forgotten by the first message after time has jumped back."""
+
+    def __init__(self):
+        self.latest = {}
+        self._last_update = rospy.Time()
+        self.subscriber = rospy.Subscriber('/tf', TFMessage, self._receive, queue_size=100)
+
+    def _receive(self, message):
+        now = rospy.Time.now()
+        if now < self._last_update:
+            self.latest.clear()
+        self._last_update = now
+        for transform in message.transforms:
+            held = self.latest.get(transform.child_frame_id)
+            if held is None or transform.header.stamp > held.header.stamp:
+                self.latest[transform.child_frame_id] = transform
 
 
 class InterfaceTest(unittest.TestCase):
@@ -88,6 +121,13 @@ class InterfaceTest(unittest.TestCase):
         self.assertEqual(speeds[:fastest + 1], sorted(speeds[:fastest + 1]))
         self.assertEqual(speeds[fastest:], sorted(speeds[fastest:], reverse=True))
         return fastest + 1
+
+    def stateCollectors(self):
+        """Gone with the test: whoever subscribes while another does gets what that one had last, and maybe late."""
+        collectors = {topic: Collector(topic, kind) for topic, kind in STATE_TOPICS}
+        for collector in collectors.values():
+            self.addCleanup(collector.subscriber.unregister)
+        return collectors
 
     # --- topics ---
 
@@ -181,6 +221,81 @@ class InterfaceTest(unittest.TestCase):
         self.assertEqual(links['world/tank'].header.frame_id, 'world')
         self.assertAlmostEqual(links['world/tank'].transform.translation.x, -0.08)
         self.assertEqual(links['ball/core'].header.frame_id, 'ball')
+
+    def testALateSubscriberSeesWhereThePausedSimulationStands(self):
+        self.tank.step(3)  # the states are due after steps 2 and 4, the surface and the statistics after 5
+        here = self.tank.state('ball')
+        rospy.rostime.wallsleep(0.3)
+        last = {topic: collector.waitFor()[-1] for topic, collector in self.stateCollectors().items()}
+        for topic, message in last.items():
+            self.assertEqual(stampOf(message), here.header.stamp, topic)
+        transforms = {transform.child_frame_id: transform for transform in last['/tf'].transforms}
+        self.assertEqual(set(transforms), {'ball', 'probe', 'post'})
+        self.assertEqual(transforms['ball'].transform.translation.z, here.pose.position.z)
+
+    def testEveryTopicStopsWithTheSimulationAndRepeatsNothing(self):
+        collectors = self.stateCollectors()
+        waitUntil(lambda: all(c.subscriber.get_num_connections() for c in collectors.values()), 'connections')
+
+        def stampsAfter(act):
+            rospy.rostime.wallsleep(0.3)  # what is latched, and what is still on its way
+            for collector in collectors.values():
+                collector.clear()
+            act()
+            rospy.rostime.wallsleep(0.3)
+            stamps = {topic: [stampOf(message) for message in collector.messages]
+                      for topic, collector in collectors.items()}
+            for topic, times in stamps.items():
+                self.assertEqual(times, sorted(set(times)), topic)
+            return stamps
+
+        def run():
+            self.tank.unpause()
+            begin = self.tank.state('ball').header.stamp
+            waitUntil(lambda: self.tank.state('ball').header.stamp > begin, 'simulated time to go on')
+            self.tank.pause()
+
+        # One step, after which nothing is due; four more, after which all but the states are; runs that stop anywhere.
+        for act in (self.tank.step, lambda: self.tank.step(4), run, run):
+            stamps = stampsAfter(act)
+            here = self.tank.state('ball').header.stamp
+            for topic, times in stamps.items():
+                self.assertTrue(times, topic)
+                self.assertEqual(times[-1], here, topic)
+            # Once more, there is nothing new to say.
+            self.assertFalse(any(stampsAfter(self.tank.pause).values()))
+
+    def testAStepThatFailsIsReportedOnce(self):
+        collectors = self.stateCollectors()
+        statistics = collectors[NODE + '/statistics']
+        statistics.waitFor()
+        self.tank.apply(body_name='ball', wrench=wrench((1e305, 0.0, 0.0)),
+                        start_time=rospy.Time.from_sec(4 * STEP_SEC), duration=rospy.Duration.from_sec(-1.0))
+        rospy.rostime.wallsleep(0.3)  # what is latched, and what is still on its way
+        statistics.clear()
+        # After the third step, of which there are no statistics by their rate.
+        self.assertFalse(self.tank.stepService(steps=10).success)
+        rospy.rostime.wallsleep(0.3)
+        self.assertEqual([(message.step, message.committed) for message in statistics.messages], [(3, False)])
+        here = self.tank.state('ball').header.stamp
+        for topic, collector in collectors.items():
+            self.assertEqual(stampOf(collector.messages[-1]), here, topic)
+
+    def testAListenerForgetsTheOldRunWithAReset(self):
+        listener = Listener()
+        self.addCleanup(listener.subscriber.unregister)
+        initial = rospy.Time.from_sec(STEP_SEC)
+        self.tank.set(body_name='ball', pose=pose(-0.04, 0.0, 0.05), twist=twist((0.5, 0.0, 0.0)))
+        # More than once: without the delay it depends on which of two connections is the quicker one.
+        for _ in range(5):
+            # It goes by the time on /clock, which comes to it late.
+            begin = self.tank.step(4)
+            waitUntil(lambda: rospy.Time.now() == begin, 'the time')
+            end = self.tank.step()
+            waitUntil(lambda: listener.latest['ball'].header.stamp == end, 'the last pose')
+            self.tank.reset()
+            waitUntil(lambda: listener.latest['ball'].header.stamp == initial, 'the initial pose', 2.0)
+            self.assertEqual(listener.latest['ball'].transform.translation.x, -0.04)
 
     def testStatisticsBeforeTheFirstStepAreOfTheState(self):
         statistics = Collector(NODE + '/statistics', Statistics)

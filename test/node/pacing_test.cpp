@@ -67,6 +67,9 @@ TEST(PublishGate, MeanRateIsExact) {
 TEST(PublishGate, EveryStepAtMostAndTheInitialStateAlways) {
   const PublishGate fast(1000.0, 0.02), slow(0.1, 0.02);
   for (int step = 0; step < 20; ++step) EXPECT_TRUE(fast.isDue(step));
+  // The number of its periods soon is too large for a number.
+  const PublishGate absurd(1e308, 0.02);
+  for (int step = 0; step < 1000; ++step) EXPECT_TRUE(absurd.isDue(step)) << step;
   EXPECT_TRUE(slow.isDue(0));
   EXPECT_FALSE(slow.isDue(1));
 }

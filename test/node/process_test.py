@@ -135,6 +135,26 @@ class ProcessTest(unittest.TestCase):
         self.assertEqual(code, 0, output)
         self.assertIn('(100 %)', output)
 
+    def testDurationIsRoundedUpToWholeSteps(self):
+        # The initial state has the stamp of one step, 0.02 s.
+        for duration, end in (('0.001', 0.04), ('0.51', 0.54), ('0.5', 0.52)):
+            clock = Collector('/clock', Clock)
+            code, output = self.finish('_scene:=' + SMALL, '_paced:=false', '_duration:=' + duration)
+            self.assertEqual(code, 0, output)
+            self.assertAlmostEqual(clock.messages[-1].clock.to_sec(), end)
+
+    def testProcessHasItsOwnName(self):
+        process = start('_scene:=' + SMALL, '_start_paused:=true', '_duration:=0')
+        try:
+            Tank()  # by then it has started over, with OpenMP as it wants it
+            with open('/proc/%d/comm' % process.pid) as stream:
+                self.assertEqual(stream.read().strip(), os.path.basename(PROGRAM)[:15])
+        finally:
+            process.send_signal(signal.SIGINT)
+            output, _ = process.communicate(timeout=10)
+            process.kill()
+        self.assertEqual(process.returncode, 0, output)
+
     def testPacedRunKeepsToRealTime(self):
         begin = time.time()
         code, output = self.finish('_scene:=' + SMALL, '_duration:=2.0', '_progress:=true')

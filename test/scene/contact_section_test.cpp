@@ -71,6 +71,15 @@ TEST_F(ContactSection, EachViolationIsNamed) {
   expect("contact: {pairs: [{friction: 0.1}]}\n", {"contact.pairs[0].between"});
   expect("contact: {pairs: [{between: [ball]}]}\n", {"contact.pairs[0].between", "two names"});
   expect("contact: {pairs: [{between: [rubbr, walls]}]}\n", {"contact.pairs[0].between", "rubbr", "rubber"});
+  const std::string repeated = "a pair that no entry before has", itself = "not one thing and itself";
+  expect("contact: {pairs: [{between: [ball, walls]}, {between: [walls, ball]}]}\n",
+         {"scene.yaml:5: contact.pairs[1].between: value [walls, ball]", repeated});
+  expect("contact: {pairs: [{between: [ball, other]}, {between: [ball, other]}]}\n",
+         {"contact.pairs[1].between", repeated});
+  expect("contact: {pairs: [{between: [walls, walls]}]}\n", {"contact.pairs[0].between", itself});
+  expect("contact: {pairs: [{between: [ball, ball]}]}\n", {"contact.pairs[0].between", itself});
+  // Two bodies may have one material.
+  EXPECT_EQ(errorOf("contact: {pairs: [{between: [rubber, rubber]}, {between: [rubber, walls]}]}\n"), "no error");
 }
 
 TEST_F(ContactSection, SolverNamesAreChecked) {

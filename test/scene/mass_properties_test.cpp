@@ -53,13 +53,15 @@ TEST(MassProperties, MasslessPartsChangeNothing) {
   EXPECT_EQ(combined({}).mass, 0.0);
 }
 
-std::string violation(double mass, const Vector3d& moments) {
+MassProperties turnedBody(double mass, const Vector3d& moments) {
   MassProperties properties;
   properties.mass = mass;
   const Matrix3d R = Eigen::AngleAxisd(0.7, Vector3d(1.0, 2.0, -1.0).normalized()).toRotationMatrix();
   properties.inertia = R * moments.asDiagonal() * R.transpose();
-  return massViolation(properties);
+  return properties;
 }
+
+std::string violation(double mass, const Vector3d& moments) { return massViolation(turnedBody(mass, moments)); }
 
 TEST(MassProperties, ViolationsAreNamed) {
   EXPECT_EQ(violation(1.0, Vector3d(1.0, 2.0, 2.5)), "");
@@ -72,6 +74,18 @@ TEST(MassProperties, ViolationsAreNamed) {
   EXPECT_NE(violation(-2.0, Vector3d::Ones()).find("mass -2 kg"), std::string::npos);
   EXPECT_NE(violation(std::nan(""), Vector3d::Ones()).find("finite mass"), std::string::npos);
   EXPECT_NE(violation(1.0, Vector3d(1.0, std::nan(""), 1.0)).find("not finite"), std::string::npos);
+}
+
+TEST(MassProperties, PartsMayBePointsRodsOrNothing) {
+  const auto ofPart = [](double mass, const Vector3d& moments) { return partViolation(turnedBody(mass, moments)); };
+  EXPECT_EQ(ofPart(1.0, Vector3d(1.0, 2.0, 2.5)), "");
+  EXPECT_EQ(ofPart(1.0, Vector3d(0.0, 2.0, 2.0)), "");  // a rod, turned: zero but for round-off
+  EXPECT_EQ(ofPart(1.0, Vector3d::Zero()), "");
+  EXPECT_EQ(ofPart(0.0, Vector3d::Zero()), "");
+  EXPECT_NE(ofPart(1.0, Vector3d(-1e-6, 2.0, 2.0)).find("none below zero"), std::string::npos);
+  EXPECT_NE(ofPart(1.0, Vector3d(0.0, 0.0, 2.0)).find("triangle inequality"), std::string::npos);
+  EXPECT_NE(ofPart(0.0, Vector3d::Ones()).find("mass 0 kg with an inertia"), std::string::npos);
+  EXPECT_NE(ofPart(1.0, Vector3d(1.0, std::nan(""), 1.0)).find("not finite"), std::string::npos);
 }
 
 }  // namespace

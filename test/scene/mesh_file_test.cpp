@@ -126,5 +126,19 @@ TEST(MeshFile, RefusesWhatIsNoMesh) {
             std::string::npos);
 }
 
+TEST(MeshFile, RefusesAScaleByMistake) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("a.obj", obj(4, false));  // 3.7 m across
+  for (const double scale : {1e-100, 1e-7, 1e6, 1e150, 1e300}) {
+    const std::string error = errorOf(file, Vector3d::Constant(scale));
+    for (const std::string& mention : {file, std::string(" m across, by its scale: expected 1e-06 to 1e+06 m")}) {
+      EXPECT_NE(error.find(mention), std::string::npos) << scale << ": " << error;
+    }
+  }
+  // One axis of it is enough.
+  EXPECT_NE(errorOf(file, Vector3d(1, 1, 1e300)).find("m across"), std::string::npos);
+  for (const double scale : {1e-6, 1e5}) EXPECT_EQ(errorOf(file, Vector3d::Constant(scale)), "no error") << scale;
+}
+
 }  // namespace
 }  // namespace monolith

@@ -164,6 +164,8 @@ TEST_F(SceneFile, EachViolationNamesLineKeyValueAndExpectation) {
       {tank("  size: [100, 100, 100]\n  cell_width: 0.001\n") + "liquid: {fill_level: 1}\n",
        {"scene.yaml:3: tank.cell_width: value 0.001: expected", "1e+15 cells need about 1.7e+09 GB, this machine has"}},
       {tank("  size: [1, 1, 1]\n  cell_width: 0.1\n  periodic: true\n"), {"tank.periodic: value true"}},
+      {tank("  size: [1, 1, 1]\n  cell_width: 0.1\n  origin: [0, -1.1e8, 0]\n"),
+       {"scene.yaml:4: tank.origin: value [0, -1.1e8, 0]: expected", "at most 1e+08 m, 1e9 cells"}},
       {tank("  size: [1, 1, 1]\n  cell_with: 0.1\n"), {"scene.yaml:3: tank.cell_with: unknown key", "\"cell_width\""}},
       {kTank + "liqid: {}\n", {"scene.yaml:2: liqid: unknown key", "\"liquid\""}},
       {kTank + kTank, {"scene.yaml:2: tank: given twice"}},
@@ -171,10 +173,14 @@ TEST_F(SceneFile, EachViolationNamesLineKeyValueAndExpectation) {
       {liquid("dynamic_viscosity: -1"), {"liquid.dynamic_viscosity: value -1", ">= 0"}},
       {liquid("fill_level: 0.61"), {"liquid.fill_level: value 0.61", "0.6"}},
       {liquid("fill_level: -0.1"), {"liquid.fill_level: value -0.1"}},
+      {liquid("fill_level: 0.05"), {"liquid.fill_level: value 0.05", "0, or more than half a cell, 0.05"}},
       {liquid("boxes: 3"), {"liquid.boxes: value 3: expected a list"}},
       {liquid("boxes: [{min: [0, 0, 0]}]"), {"liquid.boxes[0].max: missing"}},
       {liquid("boxes: [{min: [0, 0, 0.2], max: [0.1, 0.1, 0.1]}]"), {"liquid.boxes[0].max", "more than min"}},
       {liquid("boxes: [{min: [0, 0, 0], max: [0.6, 0.1, 0.1]}]"), {"liquid.boxes[0]", "inside the tank"}},
+      {liquid("boxes: [{min: [0, 0, 0], max: [0.1, 0.1, 0.1]}, {min: [0, 0.06, 0], max: [0.1, 0.14, 0.1]}]"),
+       {"scene.yaml:2: liquid.boxes[1]: value {min: [0, 0.06, 0]", "holds the centre of a cell", "0.1 m"}},
+      {liquid("boxes: [{min: [0, 0, 0], max: [0.1, 0.1, 0.05]}]"), {"liquid.boxes[0]", "holds the centre of a cell"}},
       {kTank + "time_step: 0\n", {"scene.yaml:2: time_step: value 0"}},
       {kTank + "time_step: 2e9\n", {"scene.yaml:2: time_step: value 2e9: expected at most 1e6 s"}},
       {kTank + "---\n" + kTank, {"scene.yaml:3: a further YAML document"}},
@@ -184,7 +190,10 @@ TEST_F(SceneFile, EachViolationNamesLineKeyValueAndExpectation) {
       {kTank + "solver: {time_stepping: bdf3}\n", {"solver.time_stepping: value bdf3", "backward_euler", "bdf2"}},
       {kTank + "solver: {tolerance: 2}\n", {"solver.tolerance: value 2"}},
       {kTank + "solver: {tolerance: 0}\n", {"solver.tolerance: value 0"}},
-      {kTank + "solver: {maximum_iterations: 0}\n", {"solver.maximum_iterations: value 0", ">= 1"}},
+      {kTank + "solver: {maximum_iterations: 0}\n", {"solver.maximum_iterations: value 0", "from 1 to"}},
+      {kTank + "solver: {maximum_iterations: 2147483648}\n",
+       {"solver.maximum_iterations: value 2147483648: expected a whole number from 1 to 2147483647"}},
+      {kTank + "solver: {maximum_iterations: 3.5}\n", {"solver.maximum_iterations: value 3.5", "whole number"}},
       {kTank + "solver: {threads: 1.5}\n", {"solver.threads: value 1.5", "whole number"}},
       {kTank + "solver: {threads: 1000000}\n", {"solver.threads: value 1000000", "at most 1024"}},
       {kTank + "bodies: {}\n", {"bodies: value {}: expected a list"}},
@@ -203,6 +212,7 @@ TEST_F(SceneFile, EachViolationNamesLineKeyValueAndExpectation) {
       {body("orientation: {}"), {"scene.yaml:6: bodies[0].orientation", "exactly one"}},
       {body("orientation: {quaternion: [0, 0, 0, 1.1]}"), {"bodies[0].orientation.quaternion", "norm 1.1"}},
       {body("orientation: {rpy: [0, 0]}"), {"bodies[0].orientation.rpy: value [0, 0]"}},
+      {body("material: walls"), {"bodies[0].material: value walls: expected another name"}},
       {body("motion: fixd"), {"bodies[0].motion: value fixd", "\"fixed\""}},
       {body("motion: prescribed"), {"bodies[0].prescribed: missing"}},
       {body("prescribed: {twist: [1, 0, 0, 0, 0, 0]}"), {"bodies[0].prescribed", "motion: prescribed"}},
@@ -211,6 +221,16 @@ TEST_F(SceneFile, EachViolationNamesLineKeyValueAndExpectation) {
       {body("motion: prescribed\n    prescribed: {twist: [1, 0, 0]}"), {"prescribed.twist", "list of 6"}},
   };
   for (const Case& c : cases) expectError(c.yaml, c.mentions);
+}
+
+TEST_F(SceneFile, WhatIsJustWithinTheLimitsIsAccepted) {
+  EXPECT_EQ(errorOf(kTank + "liquid: {fill_level: 0.051}\n"), "no error");
+  EXPECT_EQ(errorOf(kTank + "liquid: {boxes: [{min: [0.04, 0.04, 0.04], max: [0.06, 0.06, 0.06]}]}\n"), "no error");
+  EXPECT_EQ(errorOf(kTank + "liquid: {boxes: [{min: [-0.5, -0.4, 0.0], max: [0.5, 0.4, 0.6]}]}\n"), "no error");
+  EXPECT_EQ(errorOf("tank: {size: [1, 1, 1], cell_width: 0.1, origin: [1e8, 0, -1e8]}\n"), "no error");
+  EXPECT_EQ(load(kTank + "solver: {maximum_iterations: 2147483647}\n").solver.maximum_iterations, 2147483647);
+  // Decimal, not octal.
+  EXPECT_EQ(load(kTank + "solver: {maximum_iterations: 010}\n").solver.maximum_iterations, 10);
 }
 
 TEST_F(SceneFile, AllViolationsAreReportedAtOnce) {

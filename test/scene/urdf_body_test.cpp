@@ -26,6 +26,10 @@ std::string joint(const std::string& type, const std::string& origin = "") {
   return "<joint name=\"j\" type=\"" + type + "\"><parent link=\"a\"/><child link=\"b\"/>" + origin +
          "<axis xyz=\"0 0 1\"/><limit lower=\"0\" upper=\"1\" effort=\"1\" velocity=\"1\"/></joint>";
 }
+std::string fixedJoint(const std::string& parent, const std::string& child) {
+  return "<joint name=\"" + parent + "_" + child + "\" type=\"fixed\"><parent link=\"" + parent + "\"/><child link=\"" +
+         child + "\"/></joint>";
+}
 std::string inertial(double mass, const std::string& moments, const std::string& origin = "") {
   return "<inertial>" + origin + "<mass value=\"" + std::to_string(mass) + "\"/><inertia " + moments + "/></inertial>";
 }
@@ -104,15 +108,77 @@ TEST(UrdfBody, MovableJointsAreRefusedByNameAndType) {
 
 TEST(UrdfBody, WrongMassesAndInertiasAreRefused) {
   const std::string unit = R"(ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1")";
-  expectRefused(robot(link("a", inertial(0.0, unit) + kBall)), {"mass 0 kg", "expected a finite mass > 0"});
+  const std::string none = R"(ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0")";
+  expectRefused(robot(link("a", inertial(0.0, unit) + kBall)), {"link \"a\"", "mass 0 kg with an inertia"});
+  expectRefused(robot(link("a", inertial(0.0, none) + kBall)), {"mass 0 kg", "expected a finite mass > 0"});
+  expectRefused(robot(link("a", inertial(1.0, none) + kBall)), {"positive definite"});
   expectRefused(robot(link("a", inertial(-1.0, unit) + kBall)), {"link \"a\"", "-1"});
   expectRefused(robot(link("a", kBall)), {"mass 0 kg"});
   expectRefused(robot(link("a", inertial(1.0, R"(ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="3")") + kBall)),
                 {"triangle inequality", "1, 1, 3"});
   expectRefused(robot(link("a", inertial(1.0, R"(ixx="1" ixy="2" ixz="0" iyy="1" iyz="0" izz="1")") + kBall)),
-                {"positive definite"});
+                {"link \"a\"", "-1, 1, 3", "none below zero"});
   expectRefused(robot(link("a", inertial(1.0, R"(ixx="nan" ixy="0" ixz="0" iyy="1" iyz="0" izz="1")") + kBall)),
                 {"test.urdf"});
+}
+
+TEST(UrdfBody, EachLinksInertiaIsCheckedAndNotOnlyTheirSum) {
+  const auto withChild = [](double mass, const std::string& moments) {
+    return robot(link("a", std::string(kInertial) + kBall) + link("b", inertial(mass, moments)) + joint("fixed"));
+  };
+  // The root's moments outweigh each of these.
+  expectRefused(withChild(1.0, R"(ixx="-0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1")"),
+                {"test.urdf: link \"b\" inertial", "-0.1, 0.1, 0.1", "none below zero"});
+  expectRefused(withChild(1.0, R"(ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.3")"),
+                {"test.urdf: link \"b\" inertial", "0.1, 0.1, 0.3", "triangle inequality"});
+  expectRefused(withChild(0.0, R"(ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1")"),
+                {"test.urdf: link \"b\" inertial", "mass 0 kg with an inertia"});
+  // A point mass, a rod and a link that is a frame only.
+  for (const auto& [mass, moment] : {std::pair(1.0, "0"), std::pair(1.0, "0.1"), std::pair(0.0, "0")}) {
+    const Result result = read(withChild(
+        mass, std::string(R"(ixx="0" ixy="0" ixz="0" iyy=")") + moment + R"(" iyz="0" izz=")" + moment + "\""));
+    EXPECT_EQ(result.errors, "");
+    EXPECT_DOUBLE_EQ(result.body.mass, 2.0 + mass);
+  }
+}
+
+TEST(UrdfBody, LinksThatAreNoTreeAreRefusedByName) {
+  const auto joined = [](const std::string& joints) {
+    std::string links;
+    for (const char* name : {"l", "m", "n"}) links += link(name, std::string(kInertial) + kBall);
+    return robot(links + joints);
+  };
+  const std::string twice = "is the child of two joints", loose = "does not hang on the root, \"l\"";
+  struct Case {
+    std::string joints;
+    std::vector<std::string> mentions;
+  };
+  const std::vector<Case> cases = {
+      {fixedJoint("l", "m") + fixedJoint("l", "n") + fixedJoint("m", "n"), {"link \"n\" " + twice}},
+      {fixedJoint("l", "m") + fixedJoint("m", "m") + fixedJoint("l", "n"), {"link \"m\" " + twice}},
+      {fixedJoint("l", "m") + fixedJoint("m", "n") + fixedJoint("n", "m"), {"link \"m\" " + twice}},
+      {fixedJoint("m", "n") + fixedJoint("n", "m"), {"link \"m\" " + loose, "link \"n\" " + loose}},
+  };
+  for (const Case& c : cases) {
+    expectRefused(joined(c.joints), c.mentions);
+    // Nothing is counted twice.
+    const Result result = read(joined(c.joints));
+    EXPECT_LE(result.body.links.size(), 3u) << c.joints;
+    EXPECT_EQ(result.body.shapes.size(), result.body.links.size()) << c.joints;
+  }
+}
+
+TEST(UrdfBody, AChainTooLongToFollowIsRefused) {
+  const auto chain = [](int joints) {
+    std::string content = link("l0", std::string(kInertial) + kBall);
+    for (int i = 1; i <= joints; ++i) {
+      content += link("l" + std::to_string(i), "");
+      content += fixedJoint("l" + std::to_string(i - 1), "l" + std::to_string(i));
+    }
+    return robot(content);
+  };
+  EXPECT_EQ(read(chain(1000)).errors, "");
+  expectRefused(chain(1001), {"link \"l1001\" is more than 1000 joints from the root"});
 }
 
 TEST(UrdfBody, WrongGeometryIsRefused) {
