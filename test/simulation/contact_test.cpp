@@ -166,6 +166,7 @@ TEST(Contact, IsFoundWhereATorqueOnlyBeginsToTurnABody) {
   block.motion = BodyMotion::kFixed;
   Scene scene = meeting(boxBody("bar", {0.4, 0.05, 0.05}, 1000.0, {1.0, 0.5, 0.39}), block);
   Simulation simulation(scene);
+  ASSERT_TRUE(simulation.step().committed());  // in parts, of which each would look anew
   Wrench turn;
   turn.torque[1] = -1500.0 * scene.bodies[0].inertia_Bcm(1, 1);
   simulation.setWrench(0, turn);

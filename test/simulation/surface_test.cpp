@@ -85,40 +85,39 @@ TEST(Surface, ALightBallComesToRest) {
   EXPECT_LT(simulation.bodyStates()[0].velocity.norm(), 0.01);
 }
 
-// Liquid that lies across a periodic boundary is the same as any other.
-TEST(Surface, ABoxOfLiquidFallsAsItDoesElsewhereAcrossAPeriodicBoundary) {
+// Where liquid ends at a periodic boundary, or lies across it, it is the same as any other.
+TEST(Surface, ABoxOfLiquidFallsAtAPeriodicBoundaryAsItDoesElsewhere) {
+  const auto box = [](double from, double to) {
+    return Eigen::AlignedBox3d(Vector3d(from, 0.0, 0.0), Vector3d(to, 0.16, 0.2));
+  };
+  const std::vector<std::vector<Eigen::AlignedBox3d>> places = {
+      {box(0.1, 0.3)}, {box(0.0, 0.2)}, {box(0.2, 0.4)}, {box(0.0, 0.1), box(0.3, 0.4)}};
   std::vector<double> energies;
-  for (const bool across : {false, true}) {
+  for (const auto& boxes : places) {
     Scene scene = water({20, 8, 16}, 0.02);
     scene.tank.periodic[0] = true;
-    if (across) {
-      scene.liquid.boxes = {Eigen::AlignedBox3d(Vector3d(0.0, 0.0, 0.0), Vector3d(0.1, 0.16, 0.2)),
-                            Eigen::AlignedBox3d(Vector3d(0.3, 0.0, 0.0), Vector3d(0.4, 0.16, 0.2))};
-    } else {
-      scene.liquid.boxes = {Eigen::AlignedBox3d(Vector3d(0.1, 0.0, 0.0), Vector3d(0.3, 0.16, 0.2))};
-    }
+    scene.liquid.boxes = boxes;
     Simulation simulation(scene);
-    EXPECT_NEAR(simulation.report().liquid_volume, 0.2 * 0.16 * 0.2, 1e-3 * 0.2 * 0.16 * 0.2) << across;
+    EXPECT_NEAR(simulation.report().liquid_volume, 0.2 * 0.16 * 0.2, 1e-3 * 0.2 * 0.16 * 0.2);
     while (simulation.time() < 0.1) ASSERT_TRUE(simulation.step().committed());
     energies.push_back(simulation.report().kinetic_energy);
   }
   EXPECT_GT(energies[0], 0.1);
-  EXPECT_NEAR(energies[1], energies[0], 1e-3 * energies[0]);
+  for (const double energy : energies) EXPECT_NEAR(energy, energies[0], 1e-3 * energies[0]);
 }
 
-// The level set of what fills a tank that has no lid: its top is a surface.
-TEST(Surface, LiquidHasATopAlsoWhereTheTankIsPeriodicUpwards) {
+// Without a floor what fills the tank has a surface below, too.
+TEST(Surface, LiquidHasABottomWhereTheTankIsPeriodicUpwards) {
   Scene scene = water({8, 8, 16}, 0.02);
   scene.tank.periodic[2] = true;
-  scene.gravity.setZero();
   scene.liquid.fill_level = 0.16;
   Simulation simulation(scene);
   const double volume = 0.16 * 0.16 * 0.16;
   for (int i = 0; i < 5; ++i) {
     const StepReport r = simulation.step();
     ASSERT_TRUE(r.committed()) << r.message;
-    EXPECT_NEAR(r.liquid_volume, volume, 1e-6 * volume);
-    EXPECT_LT(r.maximum_speed, 1e-9);
+    EXPECT_NEAR(r.liquid_volume, volume, 1e-3 * volume);
+    EXPECT_NEAR(r.maximum_speed, 9.81 * r.time, 0.02 * 9.81 * r.time);
   }
 }
 
