@@ -1,7 +1,5 @@
 #include "node/tank_control.h"
 
-#include <exception>
-
 #include "node/request_error.h"
 #include "scene/nearest_word.h"
 

@@ -18,7 +18,7 @@ constexpr double kClosingTolerance = 1e-3;  // of a cell: a gap that closes by l
 // step, which would cost an order of accuracy.
 constexpr double kSteepestVelocity = 0.03;
 constexpr double kSteepestRate = 0.15;
-constexpr double kMostIntrusion = 0.5;      // of a cell, that bodies may come into walls or each other
+constexpr double kMostIntrusion = 0.5;  // of a cell, that bodies may come into walls or each other
 // After the step of an impact one of backward Euler, for the next to continue.
 constexpr int kStepsAfterImpact = 1;
 constexpr double kRoundOff = 1e-6;  // of a length of sub-steps that just fits
