@@ -111,21 +111,19 @@ class GridDistance : public SignedDistance {
   std::vector<float> values_;  // x runs fastest
 };
 
-int paddingSamples(double resolution, double spacing) {
-  return static_cast<int>(std::ceil(kPadding * resolution / spacing));
-}
+double paddingSamples(double resolution, double spacing) { return std::ceil(kPadding * resolution / spacing); }
 
-Vector3i sampleCount(const AlignedBox3d& bounds, double resolution, double spacing) {
-  const int padding = paddingSamples(resolution, spacing);
-  return ((bounds.sizes() / spacing).array().ceil().cast<int>() + 1 + 2 * padding).matrix();
+// May be more than an int holds.
+Vector3d sampleCount(const AlignedBox3d& bounds, double resolution, double spacing) {
+  return ((bounds.sizes() / spacing).array().ceil() + 1.0 + 2.0 * paddingSamples(resolution, spacing)).matrix();
 }
 
 double chooseSpacing(const AlignedBox3d& bounds, double resolution) {
   double spacing = std::min(resolution, bounds.sizes().minCoeff() / kLeastCellsAcross);
-  while (spacing < resolution && sampleCount(bounds, resolution, spacing).cast<double>().prod() > kMostSamples) {
+  while (spacing < resolution && sampleCount(bounds, resolution, spacing).prod() > kMostSamples) {
     spacing = std::min(resolution, 1.2 * spacing);
   }
-  while (sampleCount(bounds, resolution, spacing).cast<double>().prod() > kSamplesAtAll) spacing *= 1.2;
+  while (sampleCount(bounds, resolution, spacing).prod() > kSamplesAtAll) spacing *= 1.2;
   return spacing;
 }
 
@@ -141,7 +139,7 @@ std::shared_ptr<const SignedDistance> makeMeshDistance(const TriangleMesh& mesh,
 
   const AlignedBox3d bounds = vertexBounds(mesh);
   const double spacing = chooseSpacing(bounds, resolution);
-  const Vector3i samples = sampleCount(bounds, resolution, spacing);
+  const Vector3i samples = sampleCount(bounds, resolution, spacing).cast<int>();
   const Vector3d origin = bounds.center() - 0.5 * spacing * (samples.array() - 1).cast<double>().matrix();
 
   // In units of the spacing from the grid's first sample, so that OpenVDB's float coordinates stay small.

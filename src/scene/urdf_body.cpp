@@ -20,7 +20,7 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-constexpr int kDeepest = 1000;
+constexpr int kDeepest = 1000;  // joints from the root to a link: trees are gone through recursively
 
 Vector3d toEigen(const urdf::Vector3& v) { return Vector3d(v.x, v.y, v.z); }
 

@@ -236,9 +236,9 @@ void Simulation::setBodyState(int body, const Eigen::Isometry3d& X_WB, const Eig
   std::vector<RigidBody> bodies = m.state.bodies;
   RigidBody& moved = bodies[body];
   moved.q_WB = Eigen::Quaterniond(X_WB.linear()).normalized();
-  moved.p_WBcm = X_WB.translation() + moved.q_WB * moved.p_BBcm;
-  moved.p_WBcm = m.walls.imageInside(moved.p_WBcm);
-  moved.twist.head<3>() = velocity + angular_velocity.cross(moved.p_WBcm - X_WB.translation());
+  const Eigen::Vector3d to_centre = moved.q_WB * moved.p_BBcm;
+  moved.p_WBcm = m.walls.imageInside(X_WB.translation() + to_centre);
+  moved.twist.head<3>() = velocity + angular_velocity.cross(to_centre);
   moved.twist.tail<3>() = angular_velocity;
   if (!moved.p_WBcm.allFinite() || !moved.twist.allFinite() || !std::isfinite(kineticEnergy(moved))) {
     throw std::invalid_argument("state of '" + name + "': centre of mass at " + shownVector(moved.p_WBcm) +
@@ -259,9 +259,8 @@ void Simulation::setBodyState(int body, const Eigen::Isometry3d& X_WB, const Eig
 void Simulation::setLiquidVelocity(const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& velocity) {
   FaceField<double> faces;
   setVelocity(impl_->grid, velocity, faces);
-  FaceMask everywhere = impl_->state.known;
-  extrapolateVelocity(impl_->grid.lattice, 0, impl_->noSlip(), everywhere, {&faces});  // beyond the walls
   SimulationState& state = impl_->state;
+  extrapolateVelocity(impl_->grid.lattice, 0, impl_->noSlip(), state.known, {&faces});  // beyond the walls only
   state.coupled.velocity = std::move(faces);
   state.liquid_speed = largestSpeed(state.coupled.velocity);
   state.euler_steps = kStepsAfterSet;

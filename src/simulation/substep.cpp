@@ -293,8 +293,10 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
 
   takeMeans(w, scratch.other.liquid);
   state.bodies = std::move(moved);
-  for (std::size_t b = 0; b < state.bodies.size(); ++b) state.stuck_twists[b] = state.bodies[b].twist;
-  for (RigidBody& body : state.bodies) body.p_WBcm = walls.imageInside(body.p_WBcm);
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+    state.stuck_twists[b] = state.bodies[b].twist;
+    state.bodies[b].p_WBcm = walls.imageInside(state.bodies[b].p_WBcm);
+  }
   const bool impact = std::find(closing.begin(), closing.end(), 1) != closing.end();
   state.euler_steps = impact ? kStepsAfterImpact : std::max(0, state.euler_steps - 1);
   state.last_dt = dt;

@@ -221,5 +221,17 @@ TEST(Contact, IsThereAfterALapAlongAPeriodicAxis) {
   EXPECT_LT(simulation.bodyStates()[0].velocity[0], 0.01);
 }
 
+// Any image of a pose may be set; what is asked for is the velocity of the body's origin there.
+TEST(Contact, ABodyMayBeSetInAnotherImageOfAPeriodicTank) {
+  Scene scene = meeting(boxBody("box", {0.2, 0.2, 0.2}, 1000.0, {0.5, 0.5, 0.5}),
+                        boxBody("far", {0.1, 0.1, 0.1}, 1000.0, {1.5, 0.5, 0.5}));
+  scene.tank.periodic[0] = true;
+  Simulation simulation(scene);
+  simulation.setBodyState(0, Eigen::Isometry3d(Eigen::Translation3d(-1.3, 0.5, 0.5)), {0.1, 0.0, 0.0}, {0.0, 0.0, 2.0});
+  const BodyState box = simulation.bodyStates()[0];
+  EXPECT_NEAR(box.X_WB.translation()[0], 0.7, 1e-12);
+  EXPECT_LT((box.velocity - Eigen::Vector3d(0.1, 0.0, 0.0)).norm(), 1e-12);
+}
+
 }  // namespace
 }  // namespace monolith

@@ -64,7 +64,7 @@ TEST(Surface, StaysStillWhereSolidsSlantOutOfIt) {
       for (int i = 0; i < 25; ++i) {
         const StepReport r = simulation.step();
         ASSERT_TRUE(r.committed()) << r.message;
-        ASSERT_LT(r.maximum_speed, 1e-3) << solid.name << ", " << level << ", " << r.time;
+        ASSERT_LT(r.maximum_speed, 1e-9) << solid.name << ", " << level << ", " << r.time;
       }
     }
   }
