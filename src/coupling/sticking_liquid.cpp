@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "coupling/body_rows.h"
+#include "coupling/narrow_gaps.h"
 #include "coupling/stokes_coefficients.h"
 
 namespace monolith {
@@ -19,7 +20,7 @@ constexpr double kExtraAtBody = 1.0 / 24.0;
 constexpr double kExtraAtWall = 1.0 / 6.0;
 
 // Place of a cell in a body's box, in the periodic image that is nearest to the body; false outside.
-bool localCell(const Lattice& l, const BodyFractions& f, const int cell[3], int local[3]) {
+bool localCell(const Lattice& l, const BodyFractions& f, const std::array<int, 3>& cell, std::array<int, 3>& local) {
   for (int a = 0; a < 3; ++a) {
     local[a] = cell[a] - f.low[a];
     if (l.periodic[a]) {
@@ -40,18 +41,6 @@ bool isClear(const Lattice& l, int axis, int at) {
   return l.periodic[axis] || (at >= kBesideWall && at < l.n[axis] - kBesideWall);
 }
 
-struct BodyInertia {
-  int body;
-  Matrix6d sum;
-};
-
-Matrix6d& inertiaOf(int body, std::vector<BodyInertia>& parts) {
-  const auto same = [&](const BodyInertia& part) { return part.body == body; };
-  auto found = std::find_if(parts.begin(), parts.end(), same);
-  if (found == parts.end()) found = parts.insert(found, {body, Matrix6d::Zero()});
-  return found->sum;
-}
-
 }  // namespace
 
 double stickingViscosity(double density, const Eigen::Vector3d& gravity, double cell_width) {
@@ -63,9 +52,9 @@ std::vector<Matrix6d> attachStickingLiquid(const MacGrid& grid, const std::vecto
                                            const std::vector<double>& liquid_distance, SolidFractions& solids) {
   const Lattice& l = grid.lattice;
   const std::vector<std::uint8_t> near_body = rowsOfBodies(l, solids.bodies);
-  // Of every plane of faces of every axis; their sums in order.
+  // Of every plane of faces of every axis; put together in order.
   const int planes = l.faceEnd(2);
-  std::vector<std::vector<BodyInertia>> found(3 * planes);
+  std::vector<std::vector<StickingPart>> found(3 * planes);
 #pragma omp parallel for schedule(dynamic)
   for (int at = 0; at < 3 * planes; ++at) {
     const int a = at / planes, k = at % planes;
@@ -107,27 +96,28 @@ std::vector<Matrix6d> attachStickingLiquid(const MacGrid& grid, const std::vecto
           }
         }
         if (kept >= fluid[f]) continue;
-        const double stuck = fluid[f] - kept;
+        found[at].push_back({a, f, body, fluid[f] - kept});
         fluid[f] = kept;
-        if (body < 0) continue;
-        BodyFractions& fractions = solids.bodies[body];
-        const int cell[3] = {i, j, k};
-        int local[3];
-        if (!localCell(l, fractions, cell, local)) continue;
-        fractions.face[a][fractions.local(local[0], local[1], local[2])] += stuck;
-        const double mass = stuck * liquidPart(liquid_distance[f - l.stride[a]], liquid_distance[f]);
-        if (mass == 0.0) continue;
-        // In the image next to the body.
-        const Eigen::Vector3d x =
-            grid.faceCenter(a, fractions.low[0] + local[0], fractions.low[1] + local[1], fractions.low[2] + local[2]);
-        const Vector6d row = velocityRow(a, x, bodies[body].p_WBcm);
-        inertiaOf(body, found[at]) += mass * row * row.transpose();
       }
     }
   }
+  std::vector<StickingPart> parts;
+  for (const auto& plane : found) parts.insert(parts.end(), plane.begin(), plane.end());
+  reopenNarrowGaps(l, solids.fluid, parts);
   std::vector<Matrix6d> inertia(bodies.size(), Matrix6d::Zero());
-  for (const auto& plane : found) {
-    for (const BodyInertia& part : plane) inertia[part.body] += part.sum;
+  for (const auto& [a, f, body, part] : parts) {
+    if (body < 0) continue;
+    BodyFractions& fractions = solids.bodies[body];
+    std::array<int, 3> local;
+    if (!localCell(l, fractions, l.cell(f), local)) continue;
+    fractions.face[a][fractions.local(local[0], local[1], local[2])] += part;
+    const double mass = part * liquidPart(liquid_distance[f - l.stride[a]], liquid_distance[f]);
+    if (mass == 0.0) continue;
+    // In the image next to the body.
+    const Eigen::Vector3d x =
+        grid.faceCenter(a, fractions.low[0] + local[0], fractions.low[1] + local[1], fractions.low[2] + local[2]);
+    const Vector6d row = velocityRow(a, x, bodies[body].p_WBcm);
+    inertia[body] += mass * row * row.transpose();
   }
   for (auto& field : solids.fluid) fillHalo(l, field);
   return inertia;
