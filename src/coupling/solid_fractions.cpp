@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coupling/displaced_moments.h"
 #include "coupling/octant_fractions.h"
 
 namespace monolith {
@@ -139,6 +140,7 @@ void SolidSampler::sampleBody(const RigidBody& body, BodySample& out) const {
   out.shape = body.distance.get();
   out.pose = X_WB;
   BodyFractions& f = out.fractions;
+  bool whole = true;  // in the box
   for (int a = 0; a < 3; ++a) {
     const double low = (box.min()[a] - grid_.origin[a]) / h;
     const double high = (box.max()[a] - grid_.origin[a]) / h;
@@ -148,11 +150,13 @@ void SolidSampler::sampleBody(const RigidBody& body, BodySample& out) const {
     if (!l.periodic[a]) {
       first = std::clamp(first, -1, l.n[a]);
       last = std::clamp(last, -1, l.n[a]);
+      whole = whole && low >= -1.0 && high <= l.n[a] + 1;
     } else if (high - low > l.n[a] + kMargin) {
       // Longer than the tank's period: endless, and one period of it counts, far from where the shape ends.
       first += (last - first + 1 - l.n[a]) / 2;
       last = first + l.n[a] - 1;
       f.endless[a] = true;
+      whole = false;
     }
     f.low[a] = first;
     f.count[a] = std::max(0, last - first + 1);
@@ -226,6 +230,9 @@ void SolidSampler::sampleBody(const RigidBody& body, BodySample& out) const {
         }
       }
     }
+  }
+  if (whole && body.displacement) {
+    fitMoments(grid_, {body.displacement->volume, X_WB * body.displacement->centre}, f);
   }
 }
 

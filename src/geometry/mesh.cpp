@@ -121,6 +121,19 @@ double signedVolume(const TriangleMesh& mesh) {
   return six_volume / 6.0;
 }
 
+Vector3d centroid(const TriangleMesh& mesh) {
+  const Vector3d apex = vertexBounds(mesh).center();
+  double sum = 0.0;
+  Vector3d moment = Vector3d::Zero();
+  for (const Vector3i& triangle : mesh.triangles) {
+    const double part = sixVolume(mesh, triangle, apex);
+    sum += part;
+    // Of the tetrahedron: the mean of its corners.
+    for (int corner = 0; corner < 3; ++corner) moment += 0.25 * part * (mesh.vertices[triangle[corner]] - apex);
+  }
+  return apex + moment / sum;
+}
+
 void flipOrientation(TriangleMesh& mesh) {
   for (Vector3i& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
 }

@@ -23,6 +23,9 @@ MeshDefects findDefects(const TriangleMesh& mesh);
 // Divergence theorem; positive if the triangles are anticlockwise seen from outside.
 double signedVolume(const TriangleMesh& mesh);
 
+// Centre of the volume, m.
+Eigen::Vector3d centroid(const TriangleMesh& mesh);
+
 // Turns every triangle over.
 void flipOrientation(TriangleMesh& mesh);
 

@@ -102,6 +102,25 @@ double volume(const Shape& shape) {
   throw std::invalid_argument("volume: unknown kind of shape");
 }
 
+std::optional<Displacement> displacement(const std::vector<Shape>& shapes) {
+  Displacement whole;
+  std::vector<AlignedBox3d> boxes;
+  for (const Shape& shape : shapes) {
+    const AlignedBox3d box = bounds(shape, Isometry3d::Identity());
+    for (const AlignedBox3d& other : boxes) {
+      // Shapes that only touch, but for round-off, do not overlap.
+      const Vector3d common = box.max().cwiseMin(other.max()) - box.min().cwiseMax(other.min());
+      if (common.minCoeff() > 1e-9 * box.sizes().minCoeff()) return std::nullopt;
+    }
+    boxes.push_back(box);
+    const double part = volume(shape);
+    whole.volume += part;
+    whole.centre += part * (shape.X_BG * (shape.kind == Shape::Kind::kMesh ? centroid(*shape.mesh) : Vector3d::Zero()));
+  }
+  whole.centre /= whole.volume;
+  return whole;
+}
+
 AlignedBox3d bounds(const Shape& shape, const Isometry3d& X_AB) {
   const Isometry3d X_AG = X_AB * shape.X_BG;
   const Vector3d centre = X_AG.translation();

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,15 @@ std::shared_ptr<const SignedDistance> makeSignedDistance(const std::vector<Shape
 
 // Volume enclosed, m^3.
 double volume(const Shape& shape);
+
+// Volume of a solid and the centre of it: what it displaces when it is wholly in liquid.
+struct Displacement {
+  double volume = 0.0;                               // m^3
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // m
+};
+
+// Of the union of shapes, in the frame of the body; nothing where they may overlap (their bounding boxes do).
+std::optional<Displacement> displacement(const std::vector<Shape>& shapes);
 
 // Smallest box along the axes of frame A that holds the shape, its body B posed at X_AB.
 Eigen::AlignedBox3d bounds(const Shape& shape, const Eigen::Isometry3d& X_AB);

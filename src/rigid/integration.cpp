@@ -70,6 +70,7 @@ RigidBody makeRigidBody(const BodyDescription& description, double distance_reso
   body.inertia_Bcm = description.inertia_Bcm;
   body.shapes = description.shapes;
   body.distance = makeSignedDistance(description.shapes, distance_resolution);
+  body.displacement = displacement(description.shapes);
   body.q_WB = Quaterniond(description.X_WB.linear()).normalized();
   body.p_WBcm = description.X_WB * description.p_BBcm;
   switch (description.motion) {

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct RigidBody {
   Eigen::Matrix3d inertia_Bcm = Eigen::Matrix3d::Identity();  // kg m^2, axes of B
   std::vector<Shape> shapes;
   std::shared_ptr<const SignedDistance> distance;             // union of the shapes, frame B
+  std::optional<Displacement> displacement;                   // likewise, where it is known
   // state
   Eigen::Vector3d p_WBcm = Eigen::Vector3d::Zero();           // m
   Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "coupling_scene.h"
+#include "geometry/mesh_samples.h"
 
 namespace monolith {
 namespace {
@@ -61,26 +62,64 @@ TEST(SolidFractions, EveryFaceSumsToOneAlsoWhereBodiesOverlap) {
   }
 }
 
-TEST(SolidFractions, VolumeOfASphereIsItsFractionsWhereverItLies) {
+Shape shapeOf(Shape::Kind kind, const Eigen::Vector3d& position, double turn) {
+  Shape shape;
+  shape.kind = kind;
+  shape.X_BG.translation() = position;
+  shape.X_BG.rotate(Eigen::AngleAxisd(turn, Eigen::Vector3d(1.0, 2.0, -1.0).normalized()));
+  shape.radius = 0.25;
+  shape.length = 0.4;
+  shape.box_size = {0.5, 0.35, 0.4};
+  return shape;
+}
+
+// What is displaced is displaced at the right place: neither force nor torque on a body of the liquid's density at
+// rest.
+TEST(SolidFractions, HaveTheBodysVolumeAndItsCentreWhereverItLies) {
   MacGrid grid;
-  grid.lattice = Lattice({16, 16, 16}, {false, false, false});
+  grid.lattice = Lattice({24, 24, 24}, {false, true, false});
   grid.h = 0.1;
+  Shape mesh = shapeOf(Shape::Kind::kMesh, {0.02, 0.0, 0.01}, 0.3);
+  mesh.mesh = std::make_shared<TriangleMesh>(cuboid({0.5, 0.4, 0.3}, {0.05, 0.02, -0.1}));
+  const std::vector<std::vector<Shape>> bodies_of = {
+      {shapeOf(Shape::Kind::kSphere, {0.0, 0.0, 0.0}, 0.0)},
+      {shapeOf(Shape::Kind::kBox, {0.1, 0.0, 0.0}, 0.7)},
+      {shapeOf(Shape::Kind::kBox, {0.0, 0.0, 0.0}, 0.0)},
+      {shapeOf(Shape::Kind::kCylinder, {0.0, -0.1, 0.0}, 0.4)},
+      {mesh},
+      {shapeOf(Shape::Kind::kSphere, {-0.4, 0.0, 0.1}, 0.0), shapeOf(Shape::Kind::kBox, {0.4, 0.0, 0.0}, 1.2)}};
   std::mt19937 random(9);
   std::uniform_real_distribution<double> unit(0.0, 0.1);
-  for (int trial = 0; trial < 5; ++trial) {
-    BodyDescription body;
-    Shape shape;
-    shape.kind = Shape::Kind::kSphere;
-    shape.radius = 0.4;
-    body.shapes = {shape};
-    body.X_WB.translation() = Eigen::Vector3d(0.8 + unit(random), 0.8 + unit(random), 0.8 + unit(random));
-    const std::vector<RigidBody> bodies = {makeRigidBody(body, 0.05)};
-    SolidFractions solids;
-    SolidSampler(grid).sample(bodies, solids);
-    for (int a = 0; a < 3; ++a) {
-      double sum = 0.0;
-      for (const double part : solids.bodies[0].face[a]) sum += part;
-      EXPECT_NEAR(sum * grid.cellVolume() / volume(shape), 1.0, 3e-3);
+  for (std::size_t kind = 0; kind < bodies_of.size(); ++kind) {
+    for (int trial = 0; trial < 3; ++trial) {
+      BodyDescription body;
+      body.shapes = bodies_of[kind];
+      body.X_WB.translation() = Eigen::Vector3d(1.2 + unit(random), 1.2 + unit(random), 1.2 + unit(random));
+      // The third lies along the grid, where few faces are cut.
+      if (kind != 2) body.X_WB.rotate(Eigen::AngleAxisd(20.0 * unit(random), Eigen::Vector3d::UnitX()));
+      const std::vector<RigidBody> bodies = {makeRigidBody(body, 0.02)};
+      SolidFractions solids;
+      SolidSampler(grid).sample(bodies, solids);
+      const BodyFractions& f = solids.bodies[0];
+      const Displacement whole = displacement(body.shapes).value();
+      const Eigen::Vector3d centre = body.X_WB * whole.centre;
+      for (int a = 0; a < 3; ++a) {
+        double sum = 0.0;
+        Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+        for (int k = 0; k < f.count[2]; ++k) {
+          for (int j = 0; j < f.count[1]; ++j) {
+            for (int i = 0; i < f.count[0]; ++i) {
+              const double part = f.face[a][f.local(i, j, k)];
+              EXPECT_TRUE(part >= 0.0 && part <= 1.0) << part;
+              sum += part;
+              moment += part * (grid.faceCenter(a, f.low[0] + i, f.low[1] + j, f.low[2] + k) - centre);
+            }
+          }
+        }
+        // Faces with next to no liquid left are closed.
+        EXPECT_NEAR(sum * grid.cellVolume() / whole.volume, 1.0, 2e-4) << kind << " " << a;
+        EXPECT_LT((moment / sum).norm(), 2e-4 * grid.h) << kind << " " << a;
+      }
     }
   }
 }

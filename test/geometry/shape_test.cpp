@@ -173,6 +173,23 @@ TEST(ShapeUnion, IsTheMinimumInTheBodyFrame) {
   }
 }
 
+TEST(ShapeUnion, DisplacesWhatItsPartsDoUnlessTheyMayOverlap) {
+  Shape box;
+  box.box_size = {2.0, 1.0, 1.0};
+  Shape ball;
+  ball.kind = Shape::Kind::kSphere;
+  ball.radius = 0.5;
+  ball.X_BG.translation() = Eigen::Vector3d(1.5, 0.0, 0.0);  // touches it
+  const double part = M_PI / 6.0;
+  const std::optional<Displacement> both = displacement({box, ball});
+  ASSERT_TRUE(both.has_value());
+  EXPECT_NEAR(both->volume, 2.0 + part, 1e-12);
+  EXPECT_NEAR(both->centre[0], 1.5 * part / (2.0 + part), 1e-12);
+  EXPECT_NEAR(both->centre.tail<2>().norm(), 0.0, 1e-12);
+  ball.X_BG.translation()[0] = 1.4;
+  EXPECT_FALSE(displacement({box, ball}).has_value());
+}
+
 TEST(ShapeUnion, NeedsAShape) { EXPECT_THROW(makeSignedDistance(std::vector<Shape>(), 0.1), std::invalid_argument); }
 
 }  // namespace

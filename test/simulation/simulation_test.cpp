@@ -83,7 +83,22 @@ TEST(Simulation, BuoyancyIsArchimedes) {
     scene.bodies[0].motion = BodyMotion::kFixed;
     Simulation simulation(scene);
     ASSERT_TRUE(simulation.step().committed());
-    EXPECT_NEAR(simulation.bodyStates()[0].liquid.force[2] / (9810.0 * volume(scene.bodies[0].shapes[0])), 1.0, 0.01);
+    EXPECT_NEAR(simulation.bodyStates()[0].liquid.force[2] / (9810.0 * volume(scene.bodies[0].shapes[0])), 1.0, 1e-4);
+  }
+}
+
+TEST(Simulation, ABodyOfTheLiquidsDensityStaysWhereItIsAndDoesNotTurn) {
+  for (const double viscosity : {0.001, 1.0}) {
+    Scene scene = tank(0.16, viscosity);
+    scene.bodies.push_back(sphereBody("ball", 0.02, 1000.0, {0.081, 0.0777, 0.04}));
+    scene.bodies.push_back(boxBody("box", {0.05, 0.04, 0.03}, 1000.0, {0.081, 0.0777, 0.1104}));
+    scene.bodies[1].X_WB.rotate(Eigen::AngleAxisd(0.4, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()));
+    Simulation simulation(scene);
+    for (int i = 0; i < 25; ++i) ASSERT_TRUE(simulation.step().committed());
+    for (const BodyState& body : simulation.bodyStates()) {
+      EXPECT_LT(body.velocity.norm(), 1e-4) << viscosity;
+      EXPECT_LT(body.angular_velocity.norm(), 1e-2) << viscosity;
+    }
   }
 }
 
