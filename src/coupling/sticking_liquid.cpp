@@ -96,7 +96,7 @@ std::vector<Matrix6d> attachStickingLiquid(const MacGrid& grid, const std::vecto
           }
         }
         if (kept >= fluid[f]) continue;
-        found[at].push_back({a, f, body, fluid[f] - kept});
+        if (body >= 0 || kept == 0.0) found[at].push_back({a, f, body, fluid[f] - kept});
         fluid[f] = kept;
       }
     }

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "node/clock_owners.h"
 #include "node/node_options.h"
 #include "node/scene_lookup.h"
 #include "node/tank_node.h"
@@ -46,6 +47,10 @@ int main(int argc, char** argv) {
     const monolith::Scene scene =
         monolith::loadScene(monolith::findSceneFile(options.scene), monolith::makeRosResolver());
     node = std::make_unique<monolith::TankNode>(global, local, *ros::getGlobalCallbackQueue(), options, scene);
+    for (const std::string& owner : monolith::otherClockOwners()) {
+      ROS_WARN("%s publishes /clock too: with two clocks time jumps to and fro; run one of them on another master",
+               owner.c_str());
+    }
     ROS_INFO("Scene %s: %zu bodies, tank of %g x %g x %g m, cells of %g m", scene.name.c_str(), scene.bodies.size(),
              scene.tank.size.x(), scene.tank.size.y(), scene.tank.size.z(), scene.tank.cell_width);
   } catch (const std::exception& error) {

@@ -76,7 +76,9 @@ RigidBody makeRigidBody(const BodyDescription& description, double distance_reso
   switch (description.motion) {
     case BodyMotion::kFree: {
       const Vector3d arm = body.q_WB * body.p_BBcm;
-      body.twist << description.velocity + description.angular_velocity.cross(arm), description.angular_velocity;
+      body.twist.head<3>() = description.velocity;
+      body.twist.head<3>() += description.angular_velocity.cross(arm);
+      body.twist.tail<3>() = description.angular_velocity;
       break;
     }
     case BodyMotion::kFixed: body.twist.setZero(); break;

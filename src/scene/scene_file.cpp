@@ -13,6 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kStrongestGravity = 1e6;  // m/s^2; speeds that follow from much more leave the range of numbers
 constexpr double kLongestTimeStep = 1e6;  // s; with longer ones there are hardly any until clocks overflow
 
 YAML::Node parseYaml(const std::string& yaml_file) {
@@ -69,6 +70,7 @@ Scene loadScene(const std::string& yaml_file, const SceneResolver& resolver) {
   scene.name = fs::path(yaml_file).stem().string();
   map.read("name", scene.name);
   map.read<3>("gravity", scene.gravity);
+  if (scene.gravity.norm() > kStrongestGravity) map.fail("gravity", "at most 1e6 m/s^2");
   map.read("time_step", scene.time_step, Range::kPositive);
   if (scene.time_step > kLongestTimeStep) map.fail("time_step", "at most 1e6 s");
   bool tank_usable = false;

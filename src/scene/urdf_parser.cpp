@@ -3,6 +3,7 @@
 #include <console_bridge/console.h>
 #include <urdf_parser/urdf_parser.h>
 
+#include <algorithm>
 #include <exception>
 #include <mutex>
 
@@ -45,11 +46,39 @@ std::string withoutComments(std::string xml) {
   return xml;
 }
 
+// The parser goes down into elements by recursion: without end, its stack has one. URDF needs about six.
+constexpr int kDeepest = 100;
+
+// Of elements in each other, in XML without comments.
+int deepestElement(const std::string& xml) {
+  int depth = 0, deepest = 0;
+  for (std::size_t at = xml.find('<'); at != std::string::npos; at = xml.find('<', at + 1)) {
+    const char next = at + 1 < xml.size() ? xml[at + 1] : ' ';
+    if (next == '/') {
+      --depth;
+    } else if (next != '?' && next != '!') {
+      deepest = std::max(deepest, ++depth);
+      char quote = 0;
+      for (; at < xml.size() && (quote != 0 || xml[at] != '>'); ++at) {
+        if (quote != 0 ? xml[at] == quote : xml[at] == '"' || xml[at] == '\'') quote = quote != 0 ? 0 : xml[at];
+      }
+      if (at < xml.size() && xml[at - 1] == '/') --depth;
+    }
+  }
+  return deepest;
+}
+
 }  // namespace
 
 urdf::ModelInterfaceSharedPtr parseUrdf(const std::string& xml, const std::string& source) {
-  if (withoutComments(xml).find("<xacro:") != std::string::npos) {
+  const std::string plain = withoutComments(xml);
+  if (plain.find("<xacro:") != std::string::npos) {
     throw SceneError(source + ": has <xacro:...> elements: expected plain URDF, expanded by xacro beforehand");
+  }
+  const int depth = deepestElement(plain);
+  if (depth > kDeepest) {
+    throw SceneError(source + ": has elements " + std::to_string(depth) + " deep in each other: expected at most " +
+                     std::to_string(kDeepest));
   }
   CapturedErrors errors;
   std::string reason;

@@ -155,6 +155,17 @@ class ProcessTest(unittest.TestCase):
             process.kill()
         self.assertEqual(process.returncode, 0, output)
 
+    def testAnotherClockIsSaid(self):
+        other = rospy.Publisher('/clock', Clock, queue_size=1)
+        try:
+            code, output = self.finish('_scene:=' + SMALL, '_duration:=0.02', '_paced:=false')
+        finally:
+            other.unregister()
+        self.assertEqual(code, 0, output)
+        self.assertIn(rospy.get_name() + ' publishes /clock too', output)
+        code, output = self.finish('_scene:=' + SMALL, '_duration:=0.02', '_paced:=false')
+        self.assertNotIn(rospy.get_name() + ' publishes', output)
+
     def testPacedRunKeepsToRealTime(self):
         begin = time.time()
         code, output = self.finish('_scene:=' + SMALL, '_duration:=2.0', '_progress:=true')

@@ -182,6 +182,7 @@ TEST_F(SceneFile, EachViolationNamesLineKeyValueAndExpectation) {
        {"scene.yaml:2: liquid.boxes[1]: value {min: [0, 0.06, 0]", "holds the centre of a cell", "0.1 m"}},
       {liquid("boxes: [{min: [0, 0, 0], max: [0.1, 0.1, 0.05]}]"), {"liquid.boxes[0]", "holds the centre of a cell"}},
       {kTank + "time_step: 0\n", {"scene.yaml:2: time_step: value 0"}},
+      {kTank + "gravity: [0, 0, -1e20]\n", {"scene.yaml:2: gravity: value [0, 0, -1e20]: expected at most 1e6 m/s^2"}},
       {kTank + "time_step: 2e9\n", {"scene.yaml:2: time_step: value 2e9: expected at most 1e6 s"}},
       {kTank + "---\n" + kTank, {"scene.yaml:3: a further YAML document"}},
       {kTank + "gravity: -9.81\n", {"gravity: value -9.81: expected a list of 3"}},

@@ -1,0 +1,12 @@
+#pragma once
+// Who else gives the time: with two on one master it jumps to and fro for everybody.
+
+#include <string>
+#include <vector>
+
+namespace monolith {
+
+// Names of the other nodes that publish /clock, as the master knows them; one that was killed may still be among them.
+std::vector<std::string> otherClockOwners();
+
+}  // namespace monolith
