@@ -160,9 +160,9 @@ TEST_P(StepSolvers, ContactsObeyTheirLaw) {
     ++slipping;
     EXPECT_LT((f / (p.friction * a.r[c]) + slip.normalized()).norm(), 1e-5) << "contact " << c;
   }
-  EXPECT_GE(pressing, 3);
+  EXPECT_GE(pressing, 2);
   if (p.friction > 0.0 && p.friction < 0.3) {
-    EXPECT_GE(slipping, 3);
+    EXPECT_GE(slipping, 2);
   }
 }
 
