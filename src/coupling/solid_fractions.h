@@ -5,7 +5,8 @@
 // (stokes_coefficients.h) needs.
 //
 // Bodies are sampled by quarter cells, each cut by a plane, so W is exact for planes and of second order for curved
-// surfaces, and it changes smoothly when a body moves through the grid.
+// surfaces, and it changes smoothly when a body moves through the grid. Then they are fitted to the body's volume and
+// its centre (displaced_moments.h), where all of the body lies in the tank.
 
 #include <array>
 #include <cstdint>

@@ -47,14 +47,16 @@ std::string withoutComments(std::string xml) {
 }
 
 // The parser goes down into elements by recursion: without end, its stack has one. URDF needs about six.
-constexpr int kDeepest = 100;
+constexpr int kDeepestElement = 100;
 
-// Of elements in each other, in XML without comments.
+// Of elements in each other.
 int deepestElement(const std::string& xml) {
   int depth = 0, deepest = 0;
   for (std::size_t at = xml.find('<'); at != std::string::npos; at = xml.find('<', at + 1)) {
     const char next = at + 1 < xml.size() ? xml[at + 1] : ' ';
-    if (next == '/') {
+    if (xml.compare(at, 4, "<!--") == 0) {
+      at = std::min(xml.find("-->", at + 4), xml.size());
+    } else if (next == '/') {
       --depth;
     } else if (next != '?' && next != '!') {
       deepest = std::max(deepest, ++depth);
@@ -71,14 +73,13 @@ int deepestElement(const std::string& xml) {
 }  // namespace
 
 urdf::ModelInterfaceSharedPtr parseUrdf(const std::string& xml, const std::string& source) {
-  const std::string plain = withoutComments(xml);
-  if (plain.find("<xacro:") != std::string::npos) {
+  if (withoutComments(xml).find("<xacro:") != std::string::npos) {
     throw SceneError(source + ": has <xacro:...> elements: expected plain URDF, expanded by xacro beforehand");
   }
-  const int depth = deepestElement(plain);
-  if (depth > kDeepest) {
+  const int depth = deepestElement(xml);
+  if (depth > kDeepestElement) {
     throw SceneError(source + ": has elements " + std::to_string(depth) + " deep in each other: expected at most " +
-                     std::to_string(kDeepest));
+                     std::to_string(kDeepestElement));
   }
   CapturedErrors errors;
   std::string reason;

@@ -160,9 +160,9 @@ TEST_P(StepSolvers, ContactsObeyTheirLaw) {
     ++slipping;
     EXPECT_LT((f / (p.friction * a.r[c]) + slip.normalized()).norm(), 1e-5) << "contact " << c;
   }
-  EXPECT_GE(pressing, 2);
+  EXPECT_GE(pressing, 3);
   if (p.friction > 0.0 && p.friction < 0.3) {
-    EXPECT_GE(slipping, 2);
+    EXPECT_GE(slipping, 3);
   }
 }
 
@@ -172,7 +172,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, StepSolvers,
                                          Parameters{20.0, 0.55, 0.2, 1.0}, Parameters{20.0, 0.55, 1.0, 1.0},
                                          Parameters{20.0, 1.5, 0.2, 1.0},
                                          // Light and heavy for the liquid; and by the paper's discretisation.
-                                         Parameters{0.0, 0.55, 0.2, 0.01}, Parameters{20.0, 1.5, 0.2, 0.1},
+                                         Parameters{0.0, 0.55, 0.2, 0.03}, Parameters{20.0, 1.5, 0.2, 0.1},
                                          Parameters{20.0, 0.55, 0.2, 100.0},
                                          Parameters{0.0, 0.55, 0.2, 1.0, Discretisation::kFractions},
                                          Parameters{20.0, 0.55, 0.2, 1.0, Discretisation::kFractions}));

@@ -205,7 +205,7 @@ TEST(UrdfBody, ParserMessagesBecomePartOfTheError) {
   expectRefused(robot(link("a", kBall) + link("b", kBall)), {"Two root links"});
   expectRefused(robot(link("a", R"(<collision><geometry><sphere radius="big"/></geometry></collision>)")), {"big"});
   expectRefused(R"(<robot name="r"><xacro:property name="x" value="1"/></robot>)", {"xacro"});
-  std::string deep = "<robot name='r' note='a > b'>";
+  std::string deep = "<robot name='r' note='a > b <!--'><!-- <link> -->";
   for (int i = 0; i < 50000; ++i) deep += "<link>";
   expectRefused(deep, {"elements 50001 deep in each other: expected at most 100"});
   EXPECT_EQ(testing::internal::GetCapturedStdout() + testing::internal::GetCapturedStderr(), "");

@@ -15,7 +15,8 @@ constexpr double kLength = 1.0;  // m, of the tank
 const char* const kDamping = "damping, 1/s";
 const char* const kLargestError = "largest error of the height within 0.8 s, of the start's";
 
-// Liquid `depth` deep with the surface depth + height cos(k x), as a box for each column of cells; thin and periodic along y.
+// Liquid `depth` deep with the surface depth + height cos(k x), as a box for each column of cells; thin and periodic
+// along y.
 Scene waveScene(double depth, double waves, double height, double viscosity, TimeStepping scheme,
                 const Numerics& numerics) {
   const int cells = static_cast<int>(std::lround(numerics.cells_across));
@@ -149,6 +150,21 @@ std::vector<Measurement> deepWave(double viscosity, TimeStepping scheme, const N
   return {{kLargestError, worst, 0.0, scheme == TimeStepping::kBdf2 ? 0.02 : 0.0, 1.0}};
 }
 
+// Without viscosity, for which it should keep its height. `level`: of the surface at rest above the centres of a layer
+// of cells; height: of the wave; both in cells.
+std::vector<Measurement> shortWave(double level, double height, const Numerics& numerics, Meter& meter) {
+  constexpr double kPeriods = 20.0, kLast = 5.0, kLayer = 0.7;
+  const double h = kLength / numerics.cells_across, k = 2.0 * M_PI / kLength;
+  const double depth = h * (std::floor(kLayer / h) + 0.5 + level), period = 2.0 * M_PI / std::sqrt(kGravity * k);
+  Simulation simulation(waveScene(depth, 1.0, height * h, 0.0, TimeStepping::kBdf2, numerics));
+  const double start = amplitude(simulation, k);
+  double largest = 0.0;
+  meter.advance(simulation, kPeriods * period, [&](const StepReport& r) {
+    if (r.time > (kPeriods - kLast) * period) largest = std::max(largest, std::abs(amplitude(simulation, k)));
+  });
+  return {{"height after 20 periods, of the start's", largest / start, 1.0}};
+}
+
 using Wave = std::vector<Measurement> (*)(double, TimeStepping, const Numerics&, Meter&);
 
 // A run of the quick subset that misses its goal, and by how much it may.
@@ -209,6 +225,35 @@ Case viscousWave() {
   c.across = "wavelength";
   c.variants = [](Extent extent) {
     return variants(deepWave, {0.001, 0.01}, 64.0, {{16.0, 0.089}, {32.0, 0.034}}, kLargestError, extent);
+  };
+  return c;
+}
+
+Case shortWaves() {
+  Case c;
+  c.name = "ripples";
+  c.title =
+      "standing waves of a dozen cells and more without viscosity, the surface at several places in its layer of cells";
+  c.reference = "they keep their height";
+  c.across = "wavelength";
+  c.variants = [](Extent extent) {
+    std::vector<Variant> out;
+    if (extent != Extent::kFull) return out;
+    for (const double height : {0.2, 0.5, 1.0}) {
+      for (const double level : {-0.4, -0.1, 0.1, 0.3}) {
+        Sweep sweep;
+        sweep.base.cells_across = 12.0;
+        sweep.base.dt = 1.0 / 30.0;
+        sweep.cells = {12, 24};
+        sweep.steps = {1.0 / 120.0};
+        sweep.fractions = true;
+        char name[64];
+        std::snprintf(name, sizeof name, "height %g cells, level %g cells", height, level);
+        addSweep(
+            name, sweep, [=](const Numerics& n, Meter& meter) { return shortWave(level, height, n, meter); }, out);
+      }
+    }
+    return out;
   };
   return c;
 }
