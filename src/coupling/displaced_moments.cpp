@@ -48,7 +48,7 @@ Moments momentsOfPlane(const MacGrid& grid, const BodyFractions& f, int axis, in
 void fitMoments(const MacGrid& grid, const Displacement& displaced, BodyFractions& f) {
   // One sum per plane, added in order: the same bits at any thread count.
   std::vector<Moments> planes(3 * f.count[2]);
-#pragma omp parallel for schedule(dynamic)
+#pragma omp parallel for schedule(dynamic) if (f.cell.size() >= kSizeWorthSharing)
   for (int at = 0; at < 3 * f.count[2]; ++at) {
     planes[at] = momentsOfPlane(grid, f, at / f.count[2], at % f.count[2], displaced.centre);
   }
