@@ -28,10 +28,10 @@ class Collector {
   void addFace(int axis, std::ptrdiff_t face, int body, const Vector6d& coefficient) {
     const auto at = interior(face);
     if (!(problem_.coefficients.mass[axis][at] > 0.0)) return;
-    add(axis * static_cast<std::ptrdiff_t>(lattice_.size) + at, body, coefficient);
+    add(at, body, coefficient);
   }
   void addCell(std::ptrdiff_t cell, int body, const Vector6d& coefficient) {
-    add(3 * static_cast<std::ptrdiff_t>(lattice_.size) + cell, body, coefficient);
+    add(cell, body, coefficient);
   }
   std::vector<Sum> take() { return std::move(sums_); }
 
@@ -177,32 +177,54 @@ void BodyColumns<Real>::convert(const BodyColumns<From>& from) {
 }
 
 template <class Real>
-void BodyColumns<Real>::addMotion(const Real* v, Real* liquid) const {
+void BodyColumns<Real>::addMotion(const Real* v, const LiquidFields<Real>& liquid) const {
   countWork(entries_.size(), 12.0, sizeof(Entry) + 2.0 * sizeof(Real));
-  const std::size_t n = bodies();
 #pragma omp parallel for schedule(dynamic) if (entries_.size() >= kEntriesWorthSharing)
   for (int kind = 0; kind < kKinds; ++kind) {
-    for (std::size_t b = 0; b < n; ++b) {
-      const Real* w = v + 6 * b;
-      for (std::size_t i = begin_[kind * n + b]; i < begin_[kind * n + b + 1]; ++i) {
-        const Real* k = entries_[i].coefficient;
-        liquid[entries_[i].place] += k[0] * w[0] + k[1] * w[1] + k[2] * w[2] + k[3] * w[3] + k[4] * w[4] + k[5] * w[5];
-      }
+    Real* field = liquid[kind];
+    forEachOf(kind, [&](const Entry& entry, std::size_t, std::size_t b) {
+      field[entry.place] += product(entry, v + 6 * b);
+    });
+  }
+}
+
+template <class Real>
+void BodyColumns<Real>::takeMotion(const Real* v, const LiquidFields<Real>& liquid, std::vector<Real>& before) const {
+  countWork(entries_.size(), 12.0, sizeof(Entry) + 3.0 * sizeof(Real));
+  before.resize(entries_.size());
+#pragma omp parallel for schedule(dynamic) if (entries_.size() >= kEntriesWorthSharing)
+  for (int kind = 0; kind < kKinds; ++kind) {
+    Real* field = liquid[kind];
+    forEachOf(kind, [&](const Entry& entry, std::size_t i, std::size_t b) {
+      before[i] = field[entry.place];
+      field[entry.place] -= product(entry, v + 6 * b);
+    });
+  }
+}
+
+// Backwards: several bodies may have taken from one place, of which the first has seen what was there.
+template <class Real>
+void BodyColumns<Real>::giveBack(const std::vector<Real>& before, const LiquidFields<Real>& liquid) const {
+  const std::size_t n = bodies();
+  for (int kind = 0; kind < kKinds; ++kind) {
+    for (std::size_t i = begin_[(kind + 1) * n]; i > begin_[kind * n]; --i) {
+      liquid[kind][entries_[i - 1].place] = before[i - 1];
     }
   }
 }
 
 template <class Real>
-Eigen::VectorXd BodyColumns<Real>::forces(const Real* liquid) const {
+Eigen::VectorXd BodyColumns<Real>::forces(const LiquidFields<const Real>& liquid) const {
   countWork(entries_.size(), 12.0, sizeof(Entry) + sizeof(Real));
   const std::size_t n = bodies();
   Eigen::MatrixXd sums(6 * n, kKinds);
 #pragma omp parallel for schedule(dynamic) if (entries_.size() >= kEntriesWorthSharing)
   for (int kind = 0; kind < kKinds; ++kind) {
+    const Real* field = liquid[kind];
     for (std::size_t b = 0; b < n; ++b) {
       double sum[6] = {};
       for (std::size_t i = begin_[kind * n + b]; i < begin_[kind * n + b + 1]; ++i) {
-        const double x = liquid[entries_[i].place];
+        const double x = field[entries_[i].place];
         for (int d = 0; d < 6; ++d) sum[d] += entries_[i].coefficient[d] * x;
       }
       for (int d = 0; d < 6; ++d) sums(6 * b + d, kind) = sum[d];
@@ -213,7 +235,7 @@ Eigen::VectorXd BodyColumns<Real>::forces(const Real* liquid) const {
 
 template class BodyColumns<double>;
 template void BodyColumns<float>::convert(const BodyColumns<double>&);
-template void BodyColumns<float>::addMotion(const float*, float*) const;
-template Eigen::VectorXd BodyColumns<float>::forces(const float*) const;
+template void BodyColumns<float>::addMotion(const float*, const LiquidFields<float>&) const;
+template Eigen::VectorXd BodyColumns<float>::forces(const LiquidFields<const float>&) const;
 
 }  // namespace monolith

@@ -2,20 +2,22 @@
 
 namespace monolith {
 
-Eigen::MatrixXd BodySchur::resistance(const BodyColumns<float>& columns, LiquidPreconditioner& preconditioner,
-                                      std::size_t liquid) {
+Eigen::MatrixXd BodySchur::resistance(const Lattice& lattice, const BodyColumns<float>& columns,
+                                      LiquidPreconditioner& preconditioner) {
   Eigen::MatrixXd R = columns.ownResistance();
   const Eigen::Index n = R.cols();
   if (n == 0) return R;
-  std::vector<float> push(liquid), answer(liquid, 0.0f), motion(n, 0.0f);
+  std::vector<float> push(4 * lattice.size), answer(push.size(), 0.0f), motion(n, 0.0f);
+  const LiquidFields<float> push_fields = packedFields(lattice, push.data());
+  const LiquidFields<const float> answer_fields = packedFields<const float>(lattice, answer.data());
   for (Eigen::Index column = 0; column < n; ++column) {
     std::fill(push.begin(), push.end(), 0.0f);
     motion[column] = -1.0f;
-    columns.addMotion(motion.data(), push.data());
+    columns.addMotion(motion.data(), push_fields);
     motion[column] = 0.0f;
     preconditioner.apply(push.data(), 1.0f, answer.data());
     // The liquid's answer and the motion itself act on the bodies together.
-    R.col(column) += columns.forces(answer.data());
+    R.col(column) += columns.forces(answer_fields);
   }
   const Eigen::MatrixXd symmetric = 0.5 * (R + R.transpose());
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(symmetric);

@@ -12,9 +12,9 @@ namespace monolith {
 
 class BodySchur {
  public:
-  // In the units of the columns. liquid: number of packed liquid unknowns.
-  static Eigen::MatrixXd resistance(const BodyColumns<float>& columns, LiquidPreconditioner& preconditioner,
-                                    std::size_t liquid);
+  // In the units of the columns.
+  static Eigen::MatrixXd resistance(const Lattice& lattice, const BodyColumns<float>& columns,
+                                    LiquidPreconditioner& preconditioner);
 };
 
 }  // namespace monolith

@@ -142,11 +142,11 @@ DirectSolver::~DirectSolver() = default;
 
 void DirectSolver::prepare(StepProblem& problem) { impl_->prepare(problem); }
 
-CoupledReport DirectSolver::solve(const StepVector& rhs, const CoupledOptions& options, StepVector& x) {
+CoupledReport DirectSolver::solve(StepVector& rhs, const CoupledOptions& options, StepVector& x) {
   return impl_->solve(rhs, options.tolerance, x);
 }
 
-CoupledReport DirectSolver::solveWithContacts(const StepVector& rhs, const ContactRows& contacts,
+CoupledReport DirectSolver::solveWithContacts(StepVector& rhs, const ContactRows& contacts,
                                               const CoupledOptions& options, StepVector& x, Eigen::VectorXd& r) {
   const StepProblem& p = *impl_->problem;
   CoupledReport report = impl_->solve(rhs, options.tolerance, x);

@@ -16,8 +16,8 @@ class DirectSolver : public StepSolver {
   DirectSolver();
   ~DirectSolver() override;
   void prepare(StepProblem& problem) override;
-  [[nodiscard]] CoupledReport solve(const StepVector& rhs, const CoupledOptions& options, StepVector& x) override;
-  [[nodiscard]] CoupledReport solveWithContacts(const StepVector& rhs, const ContactRows& contacts,
+  [[nodiscard]] CoupledReport solve(StepVector& rhs, const CoupledOptions& options, StepVector& x) override;
+  [[nodiscard]] CoupledReport solveWithContacts(StepVector& rhs, const ContactRows& contacts,
                                                 const CoupledOptions& options, StepVector& x,
                                                 Eigen::VectorXd& r) override;
 

@@ -28,7 +28,7 @@ constexpr double kProximity = 1e-4 / kContactCompliance;  // times its complianc
 struct FastSolver::Impl {
   StepProblem* problem = nullptr;
   PackedSystem system;
-  std::vector<double> rhs, x;  // kept for their memory
+  BorderedVector rhs, x;
   double first_change = 0.0;  // of the contacts after the last step's first round, relative; 0 if that was enough
 
   // Response of the twists of the bodies in contact to unit impulses, by one liquid solve each; false if one fails.
@@ -37,11 +37,14 @@ struct FastSolver::Impl {
     system.setBorder(makeBorder(contacts, openStates(contacts)), Eigen::VectorXd(), kProximity);
     const Eigen::Index n = system.bodySize();
     K = system.estimatedResponse();
+    StepVector push_fields, answer_fields;
+    for (StepVector* v : {&push_fields, &answer_fields}) v->resize(system.lattice(), problem->bodies->size());
     for (Eigen::Index i = 0; i < n; ++i) {
       if (contacts.J.col(i).isZero(0.0)) continue;
-      std::vector<double> push(system.size(), 0.0), answer(push);
+      answer_fields.setZero();
+      BorderedVector push = system.forces(push_fields), answer = system.motion(answer_fields);
       system.setForces(Eigen::VectorXd::Unit(n, i), push);
-      const double goal = std::max(options.tolerance, kResponseTolerance) * push[system.liquidSize() + i];
+      const double goal = std::max(options.tolerance, kResponseTolerance) * push.rest[i];
       if (!system.solve(push, answer, goal, 0.0, options, report).converged) return false;
       K.col(i) = system.twists(answer);
     }
@@ -55,12 +58,12 @@ struct FastSolver::Impl {
     border = makeBorder(contacts, states);
     system.setBorder(border, compliance, kProximity);
     const Eigen::VectorXd start = borderUnknowns(contacts, states, border, r);
-    const std::size_t tail = system.size();
-    rhs.resize(tail + border.count());
-    x.resize(tail + border.count());
+    const Eigen::Index bodies = system.bodySize();
+    rhs.rest.resize(bodies + border.count());
+    x.rest.resize(bodies + border.count());
     for (Eigen::Index i = 0; i < border.count(); ++i) {
-      rhs[tail + i] = border.bias[i] - kProximity * compliance[border.entry[i]] * start[i];
-      x[tail + i] = start[i];
+      rhs.rest[bodies + i] = border.bias[i] - kProximity * compliance[border.entry[i]] * start[i];
+      x.rest[bodies + i] = start[i];
     }
   }
 
@@ -81,23 +84,23 @@ void FastSolver::prepare(StepProblem& problem) {
   m.system.set(problem);
 }
 
-CoupledReport FastSolver::solve(const StepVector& rhs, const CoupledOptions& options, StepVector& x) {
+CoupledReport FastSolver::solve(StepVector& rhs, const CoupledOptions& options, StepVector& x) {
   Eigen::VectorXd none;
   ContactRows no_contacts;
   no_contacts.J.resize(0, impl_->system.bodySize());
   return solveWithContacts(rhs, no_contacts, options, x, none);
 }
 
-CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const ContactRows& contacts,
+CoupledReport FastSolver::solveWithContacts(StepVector& rhs_fields, const ContactRows& contacts,
                                             const CoupledOptions& options, StepVector& x_fields, Eigen::VectorXd& r) {
   Impl& m = *impl_;
   StepProblem& p = *m.problem;
   CoupledReport report;
   PackedSystem& system = m.system;
   system.updateSchur();
-  system.packForces(rhs_fields, m.rhs);
-  system.packMotion(x_fields, m.x);
-  double rhs_norm = stepNorm(p, rhs_fields);
+  m.rhs = system.forces(rhs_fields);
+  m.x = system.motion(x_fields);
+  double rhs_norm = std::hypot(m.rhs.velocity_norm, m.rhs.pressure_norm, bodiesNorm(p, gatherBodies(p, rhs_fields.bodies)));
   if (!std::isfinite(rhs_norm)) return m.notConverged(report, "what acts on liquid and bodies is too large a number");
   const Eigen::Index count = contacts.count();
 
@@ -140,7 +143,8 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
       // The first guess of what the contacts do may be far off, and then hard to solve for: begin with none that press.
       if (from_open || border.count() == 0) break;
       from_open = true;
-      system.packMotion(x_fields, m.x);
+      m.x = system.motion(x_fields);
+      for (double* field : m.x.fields()) std::fill_n(field, system.lattice().size, 0.0);
       past = KrylovPast::kNothing;
       guess.setOpen();
       continue;
@@ -151,7 +155,7 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
     }
     const Eigen::VectorXd twists = system.twists(m.x);
     if (!given) {
-      const auto y = Eigen::Map<const Eigen::VectorXd>(m.x.data() + system.size(), border.count());
+      const auto y = Eigen::Map<const Eigen::VectorXd>(m.x.rest.data() + system.bodySize(), border.count());
       guess.setImpulses(impulses(contacts, states, border, y));
       guess.learnFrom(twists, std::max(options.tolerance, last.residual / rhs_norm));
     }
@@ -174,11 +178,7 @@ CoupledReport FastSolver::solveWithContacts(const StepVector& rhs_fields, const 
     return m.notConverged(report, text.str());
   }
   system.judgeAge();
-  const std::vector<Vector6d> others = x_fields.bodies;
-  system.unpackMotion(m.x, x_fields);
-  for (std::size_t b = 0; b < others.size(); ++b) {
-    if (p.free_index[b] < 0) x_fields.bodies[b] = others[b];
-  }
+  system.finish(m.x, x_fields);
   report.status = CoupledReport::Status::kConverged;
   return report;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "coupling/body_schur.h"
+#include "solve/blocked_sum.h"
 #include "solve/kernel_work.h"
 
 namespace monolith {
@@ -67,7 +68,7 @@ void PackedSystem::updateSchur() {
                     p.viscous_number <= kStaleNumber * resistance_number_ &&
                     resistance_number_ <= kStaleNumber * p.viscous_number && !stale_;
   if (!same) {
-    resistance_ = scale_.asDiagonal() * BodySchur::resistance(columns_single_, preconditioner_, liquidSize()) *
+    resistance_ = scale_.asDiagonal() * BodySchur::resistance(lattice(), columns_single_, preconditioner_) *
                   scale_.asDiagonal();
     resistance_of_ = p.free;
     resistance_number_ = p.viscous_number;
@@ -91,39 +92,33 @@ void PackedSystem::judgeAge() {
   stale_ = lost_ > kWorthRenewing * static_cast<double>(bodySize());
 }
 
-void PackedSystem::pack(const StepVector& v, bool forces, std::vector<double>& x) const {
-  const std::size_t n = lattice().size;
-  x.resize(size());
-  const double weight = forces ? flux_weight_ : 1.0;
-#pragma omp parallel for simd schedule(static)
-  for (std::size_t i = 0; i < n; ++i) {
-    for (int a = 0; a < 3; ++a) x[a * n + i] = v.velocity[a][i];
-    x[3 * n + i] = weight * v.pressure[i];
-  }
-  for (int field = 0; field < 4; ++field) clearHalo(lattice(), x.data() + field * n);
-  const Eigen::VectorXd b = gatherBodies(*problem_, v.bodies);
-  Eigen::Map<Eigen::VectorXd>(x.data() + liquidSize(), bodySize()) =
-      forces ? b.cwiseQuotient(scale_).eval() : b.cwiseProduct(scale_).eval();
+BorderedVector PackedSystem::forces(StepVector& v) const {
+  BorderedVector out{&v.velocity, &v.pressure, std::vector<double>(bodySize())};
+  setForces(gatherBodies(*problem_, v.bodies), out);
+  double square = 0.0;
+  for (const auto& field : v.velocity) square += dot(field, field);
+  out.velocity_norm = std::sqrt(square);
+  out.pressure_norm = std::sqrt(dot(v.pressure, v.pressure));
+  return out;
 }
 
-void PackedSystem::unpackMotion(const std::vector<double>& x, StepVector& v) const {
-  const std::size_t n = lattice().size;
-#pragma omp parallel for simd schedule(static)
-  for (std::size_t i = 0; i < n; ++i) {
-    for (int a = 0; a < 3; ++a) v.velocity[a][i] = x[a * n + i];
-    v.pressure[i] = x[3 * n + i];
-  }
-  for (auto& field : v.velocity) clearHalo(lattice(), field);
-  clearHalo(lattice(), v.pressure);
+BorderedVector PackedSystem::motion(StepVector& v) const {
+  BorderedVector out{&v.velocity, &v.pressure, std::vector<double>(bodySize())};
+  Eigen::Map<Eigen::VectorXd>(out.rest.data(), bodySize()) = gatherBodies(*problem_, v.bodies).cwiseProduct(scale_);
+  return out;
+}
+
+void PackedSystem::finish(const BorderedVector& x, StepVector& v) const {
+  for (double* field : x.fields()) clearHalo(lattice(), field);
   scatterBodies(*problem_, twists(x), v.bodies);
 }
 
-Eigen::VectorXd PackedSystem::twists(const std::vector<double>& x) const {
-  return Eigen::Map<const Eigen::VectorXd>(x.data() + liquidSize(), bodySize()).cwiseQuotient(scale_);
+Eigen::VectorXd PackedSystem::twists(const BorderedVector& x) const {
+  return Eigen::Map<const Eigen::VectorXd>(x.rest.data(), bodySize()).cwiseQuotient(scale_);
 }
 
-void PackedSystem::setForces(const Eigen::VectorXd& forces, std::vector<double>& rhs) const {
-  Eigen::Map<Eigen::VectorXd>(rhs.data() + liquidSize(), bodySize()) = forces.cwiseQuotient(scale_);
+void PackedSystem::setForces(const Eigen::VectorXd& forces, BorderedVector& rhs) const {
+  Eigen::Map<Eigen::VectorXd>(rhs.rest.data(), bodySize()) = forces.cwiseQuotient(scale_);
 }
 
 Eigen::MatrixXd PackedSystem::estimatedResponse() const {
@@ -152,42 +147,59 @@ void PackedSystem::apply(const FaceBlocks<Real>& faces, const CellBlocks<Real>& 
                          std::vector<Real>& x, std::vector<Real>& y) const {
   const Lattice& l = lattice();
   const std::size_t size = l.size, liquid = liquidSize();
-  Real* from = x.data();
-  Real* to = y.data();
-  for (int field = 0; field < 4; ++field) fillHalo(l, from + field * size);
-  const Faces<const Real> U{from, from + size, from + 2 * size};
-  applyMomentum(l, faces, problem_->coefficients.viscous, U, static_cast<const Real*>(from + 3 * size),
-                Faces<Real>{to, to + size, to + 2 * size});
-  applyDivergence(l, cells, U, Real(0), static_cast<const Real*>(nullptr), to + 3 * size);
-  if (bodySize() > 0) columns.addMotion(from + liquid, to);
+  const LiquidFields<Real> from = packedFields(l, x.data()), to = packedFields(l, y.data());
+  for (Real* field : from) fillHalo(l, field);
+  const Faces<const Real> U{from[0], from[1], from[2]};
+  applyMomentum(l, faces, problem_->coefficients.viscous, U, static_cast<const Real*>(from[3]),
+                Faces<Real>{to[0], to[1], to[2]});
+  applyDivergence(l, cells, U, Real(0), static_cast<const Real*>(nullptr), to[3]);
+  if (bodySize() > 0) columns.addMotion(x.data() + liquid, to);
   if (flux_weight_ != 1.0) {
     const Real weight = static_cast<Real>(flux_weight_);
-    Real* flux = to + 3 * size;
+    Real* flux = to[3];
     countWork(size, 1.0, 2.0 * sizeof(Real));
 #pragma omp parallel for simd schedule(static)
     for (std::size_t i = 0; i < size; ++i) flux[i] *= weight;
   }
-  applyBodies(columns, x, y);
+  applyBodies<Real>(columns, {from[0], from[1], from[2], from[3]}, x.data() + liquid, y.data() + liquid);
 }
 
 template <class Real>
-void PackedSystem::applyBodies(const BodyColumns<Real>& columns, const std::vector<Real>& x,
-                               std::vector<Real>& y) const {
+void PackedSystem::applyBodies(const BodyColumns<Real>& columns, const LiquidFields<const Real>& fields,
+                               const Real* rest, Real* out) const {
   using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
   const Eigen::Index n = bodySize(), k = border_compliance_.size();
   if (n == 0) return;
-  const std::size_t liquid = liquidSize();
-  const Real* from = x.data();
-  Real* to = y.data();
-  const Eigen::VectorXd v = Eigen::Map<const Vector>(from + liquid, n).template cast<double>();
-  Eigen::VectorXd force = bodies_ * v + columns.forces(from);
+  const Eigen::VectorXd v = Eigen::Map<const Vector>(rest, n).template cast<double>();
+  Eigen::VectorXd force = bodies_ * v + columns.forces(fields);
   if (k > 0) {
-    const Eigen::VectorXd r = Eigen::Map<const Vector>(from + liquid + n, k).template cast<double>();
+    const Eigen::VectorXd r = Eigen::Map<const Vector>(rest + n, k).template cast<double>();
     force -= border_C_ * r;
-    Eigen::Map<Vector>(to + liquid + n, k) =
-        (-(border_R_ * v) - border_compliance_.cwiseProduct(r)).template cast<Real>();
+    Eigen::Map<Vector>(out + n, k) = (-(border_R_ * v) - border_compliance_.cwiseProduct(r)).template cast<Real>();
   }
-  Eigen::Map<Vector>(to + liquid, n) = force.template cast<Real>();
+  Eigen::Map<Vector>(out, n) = force.template cast<Real>();
+}
+
+void PackedSystem::residual(const BorderedVector& rhs, const BorderedVector& x, std::vector<float>& r) {
+  const Lattice& l = lattice();
+  const LiquidFields<double> b = rhs.fields(), from = x.fields();
+  for (double* field : from) fillHalo(l, field);
+  // What the bodies' motion does is small where it meets what is left of the rest: both in double precision.
+  if (bodySize() > 0) columns_.takeMotion(x.rest.data(), b, before_);
+  const LiquidFields<float> to = packedFields(l, r.data());
+  const Faces<const double> U{from[0], from[1], from[2]};
+  momentumResidual(l, faces_, problem_->coefficients.viscous, {b[0], b[1], b[2]}, U, from[3], {to[0], to[1], to[2]});
+  divergenceResidual(l, cells_, b[3], U, flux_weight_, to[3]);
+  if (bodySize() > 0) columns_.giveBack(before_, b);
+  residualOfBodies(rhs, x, r);
+}
+
+void PackedSystem::residualOfBodies(const BorderedVector& rhs, const BorderedVector& x, std::vector<float>& r) const {
+  const LiquidFields<double> from = x.fields();
+  std::vector<double> out(rhs.rest.size());
+  applyBodies<double>(columns_, {from[0], from[1], from[2], from[3]}, x.rest.data(), out.data());
+  float* to = r.data() + liquidSize();
+  for (std::size_t i = 0; i < out.size(); ++i) to[i] = static_cast<float>(rhs.rest[i] - out[i]);
 }
 
 void PackedSystem::precondition(const std::vector<float>& from, std::vector<float>& to) {
@@ -201,7 +213,8 @@ void PackedSystem::preconditionBodies(const std::vector<float>& from, std::vecto
   const float* r = from.data() + liquidSize();
   float* out = to.data() + liquidSize();
   // Bodies feel what the liquid has just been given.
-  Eigen::VectorXd force = Eigen::Map<const Eigen::VectorXf>(r, n).cast<double>() - columns_single_.forces(to.data());
+  Eigen::VectorXd force = Eigen::Map<const Eigen::VectorXf>(r, n).cast<double>() -
+                          columns_single_.forces(packedFields<const float>(lattice(), to.data()));
   if (k > 0) {
     const Eigen::VectorXd free = S_inverse_ * force;
     const Eigen::VectorXd y =
@@ -229,23 +242,32 @@ Parts PackedSystem::liquidParts() const {
   return parts;
 }
 
-KrylovMaps PackedSystem::maps() {
-  return {[this](auto& from, auto& to) { apply(faces_, cells_, columns_, from, to); },
+SplitVector PackedSystem::split(BorderedVector& x) const {
+  const LiquidFields<double> fields = x.fields();
+  return {{fields[0], fields[1], fields[2], fields[3], x.rest.data()}, static_cast<std::ptrdiff_t>(lattice().size)};
+}
+
+KrylovMaps PackedSystem::maps(const BorderedVector& rhs, const BorderedVector& x) {
+  const double rest_norm = Eigen::Map<const Eigen::VectorXd>(rhs.rest.data(), rhs.rest.size()).norm();
+  return {liquidSize() + rhs.rest.size(),
+          std::hypot(rhs.velocity_norm, flux_weight_ * rhs.pressure_norm, rest_norm),
+          [&](const SplitVector&, auto& r) { residual(rhs, x, r); },
+          [this](auto& from, auto& to) { apply(faces_, cells_, columns_, from, to); },
           [this](auto& from, auto& to) { apply(faces_single_, cells_single_, columns_single_, from, to); },
           [this](auto& from, auto& to) { precondition(from, to); },
           liquidSize(),
           liquidParts(),
-          [this](const auto& from, auto& to) { applyBodies(columns_, from, to); },
+          [&](const SplitVector&, auto& r) { residualOfBodies(rhs, x, r); },
           [this](const auto& from, auto& to) { preconditionBodies(from, to); }};
 }
 
-Eigen::VectorXd PackedSystem::improvedTwists(const std::vector<double>& rhs, std::vector<double>& x) {
-  const std::vector<float>& z = krylov_.firstDirection(maps(), rhs, x);
+Eigen::VectorXd PackedSystem::improvedTwists(const BorderedVector& rhs, BorderedVector& x) {
+  const std::vector<float>& z = krylov_.firstDirection(maps(rhs, x), split(x));
   const Eigen::VectorXf change = Eigen::Map<const Eigen::VectorXf>(z.data() + liquidSize(), bodySize());
   return twists(x) + change.cast<double>().cwiseQuotient(scale_);
 }
 
-KrylovReport PackedSystem::solve(const std::vector<double>& rhs, std::vector<double>& x, double goal, double part,
+KrylovReport PackedSystem::solve(const BorderedVector& rhs, BorderedVector& x, double goal, double part,
                                  const CoupledOptions& options, CoupledReport& report, KrylovPast past) {
   KrylovOptions k;
   k.absolute_tolerance = goal;
@@ -253,7 +275,7 @@ KrylovReport PackedSystem::solve(const std::vector<double>& rhs, std::vector<dou
   k.maximum_iterations = options.maximum_iterations;
   // Where viscosities differ by orders of magnitude every direction counts.
   if (!problem_->cell_viscosity.empty()) k.shortest_cycle = k.longest_cycle;
-  const KrylovReport done = krylov_.solve(maps(), rhs, x, k, past);
+  const KrylovReport done = krylov_.solve(maps(rhs, x), split(x), k, past);
   report.iterations += done.iterations;
   ++report.solves;
   if (iterations_ == 0 && done.iterations > 0 && done.residual > 0.0) {

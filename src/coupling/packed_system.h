@@ -1,7 +1,8 @@
 #pragma once
 // The step's linear system as `fast` solves it: all unknowns in one vector - U by components, p^, lattice.size each,
 // the twists of the free bodies times their scale, the impulses of the contacts in the border - and flexible GMRES with
-// its preconditioner: the liquid's (liquid_preconditioner.h), then an approximate Schur complement S of the bodies,
+// its preconditioner. The right side and the solution stay in the fields that hold them (BorderedVector); the basis of
+// GMRES is packed. The preconditioner: the liquid's (liquid_preconditioner.h), then an approximate Schur complement S of the bodies,
 // their inertia and their resistance to motion in this liquid, bordered by the contacts. S ages slowly and is kept
 // while it serves.
 //
@@ -17,8 +18,21 @@
 #include "coupling/liquid_preconditioner.h"
 #include "coupling/step_solver.h"
 #include "solve/fgmres.h"
+#include "solve/split_vector.h"
 
 namespace monolith {
+
+// A vector of the system over a StepVector's fields of the liquid.
+struct BorderedVector {
+  FaceField<double>* velocity = nullptr;
+  std::vector<double>* pressure = nullptr;
+  std::vector<double> rest;  // unknowns of the free bodies, then of the border
+  double velocity_norm = 0.0, pressure_norm = 0.0;  // of forces
+
+  LiquidFields<double> fields() const {
+    return {(*velocity)[0].data(), (*velocity)[1].data(), (*velocity)[2].data(), pressure->data()};
+  }
+};
 
 class PackedSystem {
  public:
@@ -28,16 +42,17 @@ class PackedSystem {
   const Lattice& lattice() const { return problem_->grid.lattice; }
   std::size_t liquidSize() const { return 4 * lattice().size; }
   Eigen::Index bodySize() const { return problem_->bodyUnknowns(); }
-  std::size_t size() const { return liquidSize() + static_cast<std::size_t>(bodySize()); }
 
-  // Between fields and vectors, without border; forces and velocities of bodies scale differently.
-  void packForces(const StepVector& v, std::vector<double>& x) const { pack(v, true, x); }
-  void packMotion(const StepVector& v, std::vector<double>& x) const { pack(v, false, x); }
-  void unpackMotion(const std::vector<double>& x, StepVector& v) const;
+  // Vectors over the fields of v, whose halos are zero, without border; forces and velocities of bodies scale
+  // differently. v must outlive them.
+  BorderedVector forces(StepVector& v) const;
+  BorderedVector motion(StepVector& v) const;
+  // Completes v, over whose fields x is, from its rest.
+  void finish(const BorderedVector& x, StepVector& v) const;
 
   // Twists of the free bodies in m/s and rad/s; what is written for forces on them.
-  Eigen::VectorXd twists(const std::vector<double>& x) const;
-  void setForces(const Eigen::VectorXd& forces, std::vector<double>& rhs) const;
+  Eigen::VectorXd twists(const BorderedVector& x) const;
+  void setForces(const Eigen::VectorXd& forces, BorderedVector& rhs) const;
 
   // Response of the twists to impulses as S has it.
   Eigen::MatrixXd estimatedResponse() const;
@@ -45,11 +60,11 @@ class PackedSystem {
   // Contacts that take part, of rows with these compliances, and how much more than that each is given.
   void setBorder(const ContactBorder& physical, const Eigen::VectorXd& compliance, double proximity);
 
-  // Twists of x after one cycle of the preconditioner on its residual.
-  Eigen::VectorXd improvedTwists(const std::vector<double>& rhs, std::vector<double>& x);
+  // Twists of x after one cycle of the preconditioner on its residual. The right side is left as it was.
+  Eigen::VectorXd improvedTwists(const BorderedVector& rhs, BorderedVector& x);
   // Until the residual is `goal`, or `part` of what it was at first. past: of the call before, improvedTwists() or
-  // solve(); nothing but the border and forces on bodies may have changed since.
-  KrylovReport solve(const std::vector<double>& rhs, std::vector<double>& x, double goal, double part,
+  // solve(); nothing but the border and forces on bodies may have changed since. The right side is left as it was.
+  KrylovReport solve(const BorderedVector& rhs, BorderedVector& x, double goal, double part,
                      const CoupledOptions& options, CoupledReport& report, KrylovPast past = KrylovPast::kNothing);
 
   // S is renewed before it is next used if solves have lost more iterations by its age than renewing it takes...
@@ -59,18 +74,22 @@ class PackedSystem {
   void updateSchur();
 
  private:
-  void pack(const StepVector& v, bool forces, std::vector<double>& x) const;
   template <class Real>
   void apply(const FaceBlocks<Real>& faces, const CellBlocks<Real>& cells, const BodyColumns<Real>& columns,
              std::vector<Real>& x, std::vector<Real>& y) const;
-  // Its rows of the bodies and the border.
+  // Its rows of the bodies and the border, of x with the liquid's fields and the rest apart.
   template <class Real>
-  void applyBodies(const BodyColumns<Real>& columns, const std::vector<Real>& x, std::vector<Real>& y) const;
+  void applyBodies(const BodyColumns<Real>& columns, const LiquidFields<const Real>& fields, const Real* rest,
+                   Real* out) const;
+  // r = b - A x
+  void residual(const BorderedVector& rhs, const BorderedVector& x, std::vector<float>& r);
+  void residualOfBodies(const BorderedVector& rhs, const BorderedVector& x, std::vector<float>& r) const;
   void precondition(const std::vector<float>& from, std::vector<float>& to);
   // Its second half, for which `to` holds the liquid's.
   void preconditionBodies(const std::vector<float>& from, std::vector<float>& to) const;
   Parts liquidParts() const;
-  KrylovMaps maps();
+  KrylovMaps maps(const BorderedVector& rhs, const BorderedVector& x);
+  SplitVector split(BorderedVector& x) const;
 
   StepProblem* problem_ = nullptr;
   FaceBlocks<double> faces_;
@@ -83,6 +102,7 @@ class PackedSystem {
   LiquidPreconditioner preconditioner_;
   Fgmres krylov_;
   double flux_weight_ = 1.0;
+  std::vector<double> before_;  // of the right side, where the bodies' motion is taken from it
   Eigen::VectorXd scale_;       // unknown = scale * twist
   Eigen::MatrixXd bodies_;      // A_vv with inertia
   Eigen::MatrixXd resistance_;  // of the free bodies, physical units

@@ -240,14 +240,14 @@ void ReferenceSolver::prepare(StepProblem& problem) {
   }
 }
 
-CoupledReport ReferenceSolver::solve(const StepVector& rhs, const CoupledOptions& options, StepVector& x) {
+CoupledReport ReferenceSolver::solve(StepVector& rhs, const CoupledOptions& options, StepVector& x) {
   ContactRows none;
   none.J.resize(0, impl_->problem->bodyUnknowns());
   Eigen::VectorXd r;
   return solveWithContacts(rhs, none, options, x, r);
 }
 
-CoupledReport ReferenceSolver::solveWithContacts(const StepVector& rhs, const ContactRows& contacts,
+CoupledReport ReferenceSolver::solveWithContacts(StepVector& rhs, const ContactRows& contacts,
                                                  const CoupledOptions& options, StepVector& x, Eigen::VectorXd& r) {
   Impl& p = *impl_;
   const StressSystem& s = *p.system;

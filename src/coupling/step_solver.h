@@ -33,11 +33,12 @@ class StepSolver {
   virtual ~StepSolver() = default;
   // The problem must outlive its use; called again whenever it has been assembled anew.
   virtual void prepare(StepProblem& problem) = 0;
-  // operator * x = rhs, without contact. x: guess on entry, solution if the report says so.
-  [[nodiscard]] virtual CoupledReport solve(const StepVector& rhs, const CoupledOptions& options, StepVector& x) = 0;
+  // operator * x = rhs, without contact. x: guess on entry, solution if the report says so. rhs is on return what it
+  // was, and may be written to in between.
+  [[nodiscard]] virtual CoupledReport solve(StepVector& rhs, const CoupledOptions& options, StepVector& x) = 0;
   // With contacts, unified: pressure, viscosity, bodies, non-penetration and friction. r: start on entry, impulses on
   // return.
-  [[nodiscard]] virtual CoupledReport solveWithContacts(const StepVector& rhs, const ContactRows& contacts,
+  [[nodiscard]] virtual CoupledReport solveWithContacts(StepVector& rhs, const ContactRows& contacts,
                                                         const CoupledOptions& options, StepVector& x,
                                                         Eigen::VectorXd& r) = 0;
 };

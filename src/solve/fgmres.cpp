@@ -23,6 +23,7 @@ constexpr double kLost = 2.0;
 constexpr double kPoorCycle = 0.1;
 // The estimate of a cycle may be a little off: aim lower than the goal.
 constexpr double kMargin = 0.9;
+constexpr double kSingleRoundOff = 1e-5;  // of a norm
 
 std::size_t entries(const Parts& parts) {
   std::size_t sum = 0;
@@ -99,34 +100,36 @@ double subtract(const Parts& parts, const std::vector<std::vector<Real>>& basis,
   });
 }
 
-// y = b - y; returns |y|^2. Streams 24 bytes an entry for 3 flops.
-double subtractFrom(const double* b, double* y, std::ptrdiff_t size) {
+// In double precision: the square of a small number may be none in single.
+double sumOfSquares(const float* x, std::ptrdiff_t size) {
   double sum = 0.0;
 #pragma omp simd reduction(+ : sum)
-  for (std::ptrdiff_t i = 0; i < size; ++i) {
-    const double r = b[i] - y[i];
-    y[i] = r;
-    sum += r * r;
-  }
+  for (std::ptrdiff_t i = 0; i < size; ++i) sum += static_cast<double>(x[i]) * static_cast<double>(x[i]);
   return sum;
 }
 
 // x += sum_v coefficient[v] z[v]
 template <class Real>
 void combine(const Parts& parts, const std::vector<std::vector<Real>>& z, const Eigen::VectorXd& coefficient,
-             std::vector<double>& x) {
+             const SplitVector& x) {
   const auto count = static_cast<double>(coefficient.size());
   countWork(entries(parts), 2.0 * count, sizeof(Real) * count + 2.0 * sizeof(double));
 #pragma omp parallel for schedule(static)
   for (std::size_t p = 0; p < parts.size(); ++p) {
-    const auto [begin, end] = parts[p];
+    const std::ptrdiff_t begin = parts[p].begin, size = parts[p].end - begin;
+    double* to = x.at(begin);
     for (int v = 0; v < coefficient.size(); ++v) {
-      const Real* q = z[v].data();
+      const Real* q = z[v].data() + begin;
       const double a = coefficient[v];
 #pragma omp simd
-      for (std::ptrdiff_t i = begin; i < end; ++i) x[i] += a * q[i];
+      for (std::ptrdiff_t i = 0; i < size; ++i) to[i] += a * q[i];
     }
   }
+}
+
+void setZero(const Parts& parts, const SplitVector& x) {
+#pragma omp parallel for schedule(static)
+  for (std::size_t p = 0; p < parts.size(); ++p) std::fill_n(x.at(parts[p].begin), parts[p].end - parts[p].begin, 0.0);
 }
 
 template <class From, class To>
@@ -157,7 +160,6 @@ std::vector<Real>& Fgmres::Space<Real>::room(std::vector<std::vector<Real>>& vec
 void Fgmres::forget() {
   single_.clean_basis = single_.clean_directions = 0;
   double_.clean_basis = double_.clean_directions = 0;
-  work_.clear();
   v_single_.clear();
   z_single_.clear();
 }
@@ -173,48 +175,40 @@ void Fgmres::lose(const std::vector<std::ptrdiff_t>& begins, int length) {
   };
   clearAll(single_);
   clearAll(double_);
-  clear(work_);
   clear(v_single_);
   clear(z_single_);
 }
 
-const std::vector<float>& Fgmres::firstDirection(const KrylovMaps& maps, const std::vector<double>& b,
-                                                 std::vector<double>& x) {
-  divide(maps, b.size());
-  work_.resize(b.size(), 0.0);
-  residual(maps, b, x);
-  std::vector<float>& r = single_.basisRoom(0, b.size());
-  std::vector<float>& z = single_.directionRoom(0, b.size());
-  scaleInto(parts_, work_, 1.0, r);
+const std::vector<float>& Fgmres::firstDirection(const KrylovMaps& maps, const SplitVector& x) {
+  divide(maps);
+  std::vector<float>& r = residualRoom(maps);
+  std::vector<float>& z = single_.directionRoom(0, maps.size);
+  maps.residual(x, r);
   maps.precondition(r, z);
   return z;
 }
 
-double Fgmres::residual(const KrylovMaps& maps, const std::vector<double>& b, std::vector<double>& x) {
-  maps.apply(x, work_);
-  countWork(entries(parts_), 3.0, 3.0 * sizeof(double));
-  return std::sqrt(blockedSum<double>(parts_, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    return subtractFrom(b.data() + begin, work_.data() + begin, end - begin);
-  }));
+double Fgmres::residual(const KrylovMaps& maps, const SplitVector& x) {
+  maps.residual(x, residualRoom(maps));
+  return residualNorm();
 }
 
-void Fgmres::divide(const KrylovMaps& maps, std::size_t size) {
+double Fgmres::completedResidual(const KrylovMaps& maps, const SplitVector& x) {
+  maps.residual_rest(x, residualRoom(maps));
+  return residualNorm();
+}
+
+double Fgmres::residualNorm() const {
+  const float* r = single_.basis[0].data();
+  countWork(entries(parts_), 2.0, sizeof(float));
+  return std::sqrt(blockedSum<double>(
+      parts_, [&](std::ptrdiff_t begin, std::ptrdiff_t end) { return sumOfSquares(r + begin, end - begin); }));
+}
+
+void Fgmres::divide(const KrylovMaps& maps) {
   parts_ = maps.parts;
-  const auto end = static_cast<std::ptrdiff_t>(size);
+  const auto end = static_cast<std::ptrdiff_t>(maps.size);
   appendParts(parts_.empty() ? 0 : static_cast<std::ptrdiff_t>(maps.rest), end, parts_);
-}
-
-double Fgmres::norm(const std::vector<double>& x) const {
-  countWork(entries(parts_), 2.0, sizeof(double));
-  return std::sqrt(blockedSum<double>(parts_, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    return sumOfProducts(x.data() + begin, x.data() + begin, end - begin);
-  }));
-}
-
-double Fgmres::completedResidual(const KrylovMaps& maps, const std::vector<double>& b, const std::vector<double>& x) {
-  maps.apply_rest(x, work_);
-  for (std::size_t i = maps.rest; i < b.size(); ++i) work_[i] = b[i] - work_[i];
-  return norm(work_);
 }
 
 void Fgmres::extend(const KrylovMaps& maps, bool known, std::vector<float>& v, std::vector<float>& z,
@@ -239,15 +233,15 @@ void Fgmres::extend(const KrylovMaps& maps, bool, std::vector<double>& v, std::v
 
 template <class Real>
 int Fgmres::cycle(const KrylovMaps& maps, double norm, double goal, int most, bool first_known, Space<Real>& space,
-                  std::vector<double>& x) {
+                  const SplitVector& x) {
   constexpr bool single = std::is_same_v<Real, float>;
   Eigen::MatrixXd hessenberg = Eigen::MatrixXd::Zero(most + 1, most);
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(most, most);
   Eigen::VectorXd rhs = Eigen::VectorXd::Zero(most + 1);
   std::vector<Eigen::JacobiRotation<double>> rotations(most);
   rhs[0] = 1.0;
-  const std::size_t size = work_.size();
-  scaleInto(parts_, work_, 1.0 / norm, space.basisRoom(0, size));
+  const std::size_t size = maps.size;
+  scaleInto(parts_, single_.basis[0], 1.0 / norm, space.basisRoom(0, size));
   std::vector<double> estimates(kPatience, 1.0);
   int used = 0;
   bool stop = false;
@@ -284,20 +278,17 @@ int Fgmres::cycle(const KrylovMaps& maps, double norm, double goal, int most, bo
   return used;
 }
 
-KrylovReport Fgmres::solve(const KrylovMaps& maps, const std::vector<double>& b, std::vector<double>& x,
-                           const KrylovOptions& options, KrylovPast past) {
+KrylovReport Fgmres::solve(const KrylovMaps& maps, const SplitVector& x, const KrylovOptions& options,
+                           KrylovPast past) {
   KrylovReport report;
-  divide(maps, b.size());
-  work_.resize(b.size(), 0.0);
+  divide(maps);
   bool first_known = past == KrylovPast::kDirection;
-  report.residual = past == KrylovPast::kNothing ? residual(maps, b, x) : completedResidual(maps, b, x);
-  const double none = norm(b);
-  if (report.residual > none) {
+  report.residual = past == KrylovPast::kNothing ? residual(maps, x) : completedResidual(maps, x);
+  if (report.residual > (1.0 + kSingleRoundOff) * maps.right_norm) {
     // A guess that is worse than none: what it left wrong, where viscosities have changed by orders of magnitude, would
     // have to be taken back first.
-    std::fill(x.begin(), x.end(), 0.0);
-    work_ = b;
-    report.residual = none;
+    setZero(parts_, x);
+    report.residual = residual(maps, x);
     first_known = false;
   }
   report.initial_residual = report.residual;
@@ -307,14 +298,15 @@ KrylovReport Fgmres::solve(const KrylovMaps& maps, const std::vector<double>& b,
   int length = std::min(options.shortest_cycle, options.longest_cycle);
   while (!report.converged && report.iterations < options.maximum_iterations && std::isfinite(report.residual)) {
     const double wanted = kMargin * target / report.residual;
-    const double goal = single ? std::max(wanted, kLeastReduction) : wanted;
+    // As many cycles as single precision takes share it equally, which takes the fewest directions at once.
+    const double goal = single ? std::pow(wanted, 1.0 / std::ceil(std::log(wanted) / std::log(kLeastReduction))) : wanted;
     const int most = std::min(length, options.maximum_iterations - report.iterations);
     const int used = single ? cycle(maps, report.residual, goal, most, first_known, single_, x)
                             : cycle(maps, report.residual, goal, most, false, double_, x);
     first_known = false;
     report.iterations += used;
     const double last = report.residual;
-    report.residual = residual(maps, b, x);
+    report.residual = residual(maps, x);
     report.converged = report.residual <= target;
     if (report.converged) continue;
     if (used == most) {

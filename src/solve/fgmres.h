@@ -1,7 +1,7 @@
 #pragma once
 // Flexible GMRES (Saad 1993, SIAM J. Sci. Comput. 14, 461), right preconditioned, inside iterative refinement: the
-// residual b - A x is formed in double precision at each restart, the correction is found in single precision on
-// vectors half as wide. Keeping the directions P^-1 v beside the basis costs memory and pays: the operator sees their
+// residual b - A x is formed in double precision at each restart and kept in single, the correction is found on vectors
+// half as wide as x. b stays with whoever forms the residual; x may lie in pieces. Keeping the directions P^-1 v beside the basis costs memory and pays: the operator sees their
 // rounding, where a correction P^-1 (V y) formed at the end carries that of a large, smooth pressure into the solution.
 // Where single precision ends short of the goal, the cycles that follow are in double; the preconditioner stays single.
 // Minimises |b - A x|_2 over each cycle; the residual that it reports is the recomputed one.
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "solve/blocked_sum.h"
+#include "solve/split_vector.h"
 
 namespace monolith {
 
@@ -34,16 +35,19 @@ struct KrylovReport {
 // What is to be solved. x may be changed where that doesn't change A x (halos). Entries that are no unknowns need not
 // be written: they are zero before.
 struct KrylovMaps {
-  std::function<void(std::vector<double>& x, std::vector<double>& y)> apply;
+  std::size_t size = 0;     // entries
+  double right_norm = 0.0;  // |b|_2
+  std::function<void(const SplitVector& x, std::vector<float>& r)> residual;  // r = b - A x
+  std::function<void(std::vector<double>& x, std::vector<double>& y)> apply;  // y = A x, where double is needed
   std::function<void(std::vector<float>& x, std::vector<float>& y)> apply_single;
   std::function<void(std::vector<float>& x, std::vector<float>& y)> precondition;
   // Where solve() is told to go on from the call before. Entries from `rest` on are those in which the right side, and
   // of which the guess, may have changed since; the others of A x do not depend on them. May be missing.
   std::size_t rest = 0;
-  // All entries before `rest` that may be unknowns; none: every entry.
+  // All entries before `rest` that may be unknowns, no part across pieces of x; none: every entry.
   Parts parts{};
-  std::function<void(const std::vector<double>& x, std::vector<double>& y)> apply_rest{};  // these entries of A x
-  std::function<void(const std::vector<float>& x, std::vector<float>& y)> complete{};      // these entries of P^-1 x
+  std::function<void(const SplitVector& x, std::vector<float>& r)> residual_rest{};    // these entries of b - A x
+  std::function<void(const std::vector<float>& x, std::vector<float>& y)> complete{};  // these entries of P^-1 x
 };
 
 // What the last call, with the same maps, has left for solve().
@@ -56,12 +60,11 @@ enum class KrylovPast {
 class Fgmres {
  public:
   // x holds the initial guess on entry, the solution on return. Work space is kept between calls.
-  [[nodiscard]] KrylovReport solve(const KrylovMaps& maps, const std::vector<double>& b, std::vector<double>& x,
-                                   const KrylovOptions& options, KrylovPast past = KrylovPast::kNothing);
+  [[nodiscard]] KrylovReport solve(const KrylovMaps& maps, const SplitVector& x, const KrylovOptions& options,
+                                   KrylovPast past = KrylovPast::kNothing);
 
   // P^-1 (b - A x): where a first step would go. Valid until the next call.
-  [[nodiscard]] const std::vector<float>& firstDirection(const KrylovMaps& maps, const std::vector<double>& b,
-                                                         std::vector<double>& x);
+  [[nodiscard]] const std::vector<float>& firstDirection(const KrylovMaps& maps, const SplitVector& x);
 
   // The unknowns may be others from now on than those of the solves before...
   void forget();
@@ -85,17 +88,19 @@ class Fgmres {
                                    std::size_t size);
   };
 
-  // How threads share vectors of this length.
-  void divide(const KrylovMaps& maps, std::size_t size);
-  double norm(const std::vector<double>& x) const;
-  double residual(const KrylovMaps& maps, const std::vector<double>& b, std::vector<double>& x);
-  // The same where work_ holds all of it but the rest.
-  double completedResidual(const KrylovMaps& maps, const std::vector<double>& b, const std::vector<double>& x);
-  // One cycle on the residual in work_, until it is `goal` times as large; adds to x. first_known: only a rest of the
-  // first direction is missing. Returns the number of directions.
+  // How threads share vectors.
+  void divide(const KrylovMaps& maps);
+  // Where the next basis begins: b - A x, until a cycle scales it.
+  std::vector<float>& residualRoom(const KrylovMaps& maps) { return single_.basisRoom(0, maps.size); }
+  double residualNorm() const;
+  double residual(const KrylovMaps& maps, const SplitVector& x);
+  // The same where all of it but the rest is there.
+  double completedResidual(const KrylovMaps& maps, const SplitVector& x);
+  // One cycle on the residual, until it is `goal` times as large; adds to x. first_known: only a rest of the first
+  // direction is missing. Returns the number of directions.
   template <class Real>
   int cycle(const KrylovMaps& maps, double norm, double goal, int most, bool first_known, Space<Real>& space,
-            std::vector<double>& x);
+            const SplitVector& x);
   // z = P^-1 v, or only the rest of it; w = A z.
   void extend(const KrylovMaps& maps, bool known, std::vector<float>& v, std::vector<float>& z, std::vector<float>& w);
   void extend(const KrylovMaps& maps, bool known, std::vector<double>& v, std::vector<double>& z,
@@ -104,7 +109,6 @@ class Fgmres {
   Space<float> single_;
   Space<double> double_;  // empty unless it was needed
   Parts parts_;
-  std::vector<double> work_;  // the residual of the last call
   std::vector<float> v_single_, z_single_;
 };
 

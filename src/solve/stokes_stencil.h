@@ -66,6 +66,12 @@ void buildCellBlocks(const StaggeredCoefficients<From>& c, CellBlocks<Real>& out
 template <class Real>
 void applyMomentum(const Lattice& l, const FaceBlocks<Real>& blocks, bool viscous, const Faces<const Real>& U,
                    const Real* p, const Faces<Real>& y);
+// r = b - (A U - C^T p), formed in double precision
+void momentumResidual(const Lattice& l, const FaceBlocks<double>& blocks, bool viscous, const Faces<const double>& b,
+                      const Faces<const double>& U, const double* p, const Faces<float>& r);
+// r = weight (b + C U) on cells with pressure, likewise
+void divergenceResidual(const Lattice& l, const CellBlocks<double>& blocks, const double* b,
+                        const Faces<const double>& U, double weight, float* r);
 // y = factor * g - C U on cells with pressure; g may be null: zero.
 template <class Real>
 void applyDivergence(const Lattice& l, const CellBlocks<Real>& blocks, const Faces<const Real>& U, Real factor,
