@@ -85,7 +85,8 @@ void StepOperator::bodyForces(StepVector& x, std::vector<Vector6d>& forces) cons
     });
   };
   const auto addNormal = [&](int a, std::vector<Vector6d>& out) {
-    const auto &u = x.velocity[a], &normal = c.normal[a];
+    const auto& u = x.velocity[a];
+    const auto& normal = c.normal[a];
     add(
         rows_->normal[a], out, [&](std::ptrdiff_t s) { return normal[s] * (u[s + l.stride[a]] - u[s]); },
         [&](std::ptrdiff_t s) { return normal[s]; });

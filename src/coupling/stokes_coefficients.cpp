@@ -103,9 +103,9 @@ void buildPlainRow(const SampleBuilder& samples, double viscous_number, std::ptr
     for (int i = 0; i < width; ++i) {
       has[i] = (m[i] == SampleBuilder::kPlain) & (kind[i] != kAir) & (kind[i + s] != kAir);
     }
-    double* normal = out.normal[a].data() + row;
+    float* normal = out.normal[a].data() + row;
 #pragma omp simd
-    for (int i = 0; i < width; ++i) normal[i] = has[i] ? number * part(d[i]) : 0.0;
+    for (int i = 0; i < width; ++i) normal[i] = static_cast<float>(has[i] ? number * part(d[i]) : 0.0);
   }
   for (int p = 0; p < 3; ++p) {
     const auto sa = l.stride[kShearPairs[p][0]], sb = l.stride[kShearPairs[p][1]];
@@ -115,12 +115,12 @@ void buildPlainRow(const SampleBuilder& samples, double viscous_number, std::ptr
       has[i] = (m[i] == SampleBuilder::kPlain) & (kind_a[i] != kAir) & (kind_a[i - sb] != kAir) & (kind_b[i] != kAir) &
                (kind_b[i - sa] != kAir);
     }
-    double* first = out.shear[p][0].data() + row;
-    double* second = out.shear[p][1].data() + row;
+    float* first = out.shear[p][0].data() + row;
+    float* second = out.shear[p][1].data() + row;
 #pragma omp simd
     for (int i = 0; i < width; ++i) {
       const double liquid = part(0.25 * (d[i] + d[i - sa] + d[i - sb] + d[i - sa - sb]));
-      const double weight = has[i] ? std::sqrt(viscous_number * liquid) : 0.0;
+      const auto weight = static_cast<float>(has[i] ? std::sqrt(viscous_number * liquid) : 0.0);
       first[i] = weight;
       second[i] = weight;
     }

@@ -12,7 +12,7 @@ void computeStress(const StaggeredCoefficients<Real>& c, const FaceField<Real>& 
   forEachRow(l, [&](std::ptrdiff_t row, int, int) {
     for (int a = 0; a < 3; ++a) {
       const Real* u = U[a].data() + row;
-      const Real* k = c.normal[a].data() + row;
+      const float* k = c.normal[a].data() + row;
       Real* s = stress.normal[a].data() + row;
       const auto step = l.stride[a];
 #pragma omp simd
@@ -22,8 +22,8 @@ void computeStress(const StaggeredCoefficients<Real>& c, const FaceField<Real>& 
       const auto [a, b] = kShearPairs[p];
       const Real* u = U[a].data() + row;
       const Real* v = U[b].data() + row;
-      const Real* ku = c.shear[p][0].data() + row;
-      const Real* kv = c.shear[p][1].data() + row;
+      const float* ku = c.shear[p][0].data() + row;
+      const float* kv = c.shear[p][1].data() + row;
       Real* t = stress.shear[p].data() + row;
       const auto sa = l.stride[a];
       const auto sb = l.stride[b];
@@ -52,7 +52,7 @@ void applyMomentum(const StaggeredCoefficients<Real>& c, const FaceField<Real>& 
         for (int i = 0; i < width; ++i) out[i] = m[i] * u[i];
         continue;
       }
-      const Real* d = c.drag[a].data() + row;
+      const float* d = c.drag[a].data() + row;
       const Real* s = stress.normal[a].data() + row;
       const auto sa = l.stride[a];
       // The two shear pairs that component a takes part in; `first` tells in which place.
@@ -64,8 +64,8 @@ void applyMomentum(const StaggeredCoefficients<Real>& c, const FaceField<Real>& 
       const auto sq = l.stride[q_first ? kShearPairs[q][1] : kShearPairs[q][0]];
       const Real* tp = stress.shear[p].data() + row;
       const Real* tq = stress.shear[q].data() + row;
-      const Real* kp = c.shear[p][p_first ? 0 : 1].data() + row;
-      const Real* kq = c.shear[q][q_first ? 0 : 1].data() + row;
+      const float* kp = c.shear[p][p_first ? 0 : 1].data() + row;
+      const float* kq = c.shear[q][q_first ? 0 : 1].data() + row;
 #pragma omp simd
       for (int i = 0; i < width; ++i) {
         const Real force = s[i - sa] - s[i] + kp[i] * tp[i] - kp[i + sp] * tp[i + sp] + kq[i] * tq[i] -
@@ -119,19 +119,19 @@ void convertCoefficients(const StaggeredCoefficients<From>& c, StaggeredCoeffici
   const auto copy = [](const auto& from, auto& to) {
     for (std::size_t a = 0; a < from.size(); ++a) {
       to[a].resize(from[a].size());
-      const From* x = from[a].data();
-      To* y = to[a].data();
+      const auto* x = from[a].data();
+      auto* y = to[a].data();
 #pragma omp parallel for simd schedule(static) if (from[a].size() >= kSizeWorthSharing)
-      for (std::size_t i = 0; i < from[a].size(); ++i) y[i] = static_cast<To>(x[i]);
+      for (std::size_t i = 0; i < from[a].size(); ++i) y[i] = static_cast<std::decay_t<decltype(y[i])>>(x[i]);
     }
   };
   out.lattice = c.lattice;
   out.viscous = c.viscous;
   copy(c.mass, out.mass);
   copy(c.open, out.open);
-  copy(c.drag, out.drag);
-  copy(c.normal, out.normal);
-  for (int p = 0; p < 3; ++p) copy(c.shear[p], out.shear[p]);
+  out.drag = c.drag;
+  out.normal = c.normal;
+  out.shear = c.shear;
   out.has_pressure = c.has_pressure;
 }
 

@@ -31,9 +31,9 @@ struct StaggeredCoefficients {
   bool viscous = false;
   FaceField<Real> mass;                    // liquid part of the face's control volume; 0: no unknown
   FaceField<Real> open;                    // part of it that is not solid; 0 where mass is 0
-  FaceField<Real> drag;                    // tie of a face to the solid it lies in
-  FaceField<Real> normal;                  // per cell and axis
-  std::array<std::array<std::vector<Real>, 2>, 3> shear;  // per pair: factor of the first, of the second component
+  FaceField<float> drag;                   // tie of a face to the solid it lies in
+  FaceField<float> normal;                 // per cell and axis
+  std::array<std::array<std::vector<float>, 2>, 3> shear;  // per pair: factor of the first, of the second component
   std::vector<std::uint8_t> has_pressure;  // per cell
 
   void resize(const Lattice& l, bool with_viscosity) {
@@ -43,9 +43,9 @@ struct StaggeredCoefficients {
       mass[a].assign(l.size, Real(0));
       open[a].assign(l.size, Real(0));
       const std::size_t viscous_size = viscous ? l.size : 0;
-      drag[a].assign(viscous_size, Real(0));
-      normal[a].assign(viscous_size, Real(0));
-      for (int s = 0; s < 2; ++s) shear[a][s].assign(viscous_size, Real(0));
+      drag[a].assign(viscous_size, 0.0f);
+      normal[a].assign(viscous_size, 0.0f);
+      for (int s = 0; s < 2; ++s) shear[a][s].assign(viscous_size, 0.0f);
     }
     has_pressure.assign(l.size, 0);
   }

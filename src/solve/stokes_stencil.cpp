@@ -99,8 +99,8 @@ void fillFaceRow(const StaggeredCoefficients<From>& c, int a, std::ptrdiff_t row
       k[S::kTransfer][i] = m[i];
     }
   } else {
-    const From* drag = c.drag[a].data() + row;
-    const From* normal = c.normal[a].data() + row;
+    const float* drag = c.drag[a].data() + row;
+    const float* normal = c.normal[a].data() + row;
 #pragma omp simd
     for (int i = 0; i < width; ++i) {
       const Real low = normal[i - sa], high = normal[i];
@@ -116,8 +116,8 @@ void fillFaceRow(const StaggeredCoefficients<From>& c, int a, std::ptrdiff_t row
     for (int o = 0; o < 2; ++o) {
       const int b = kOthers[a].axis[o], place = kOthers[a].place[o];
       const auto sb = l.stride[b];
-      const From* own = c.shear[kOthers[a].pair[o]][place].data() + row;
-      const From* other = c.shear[kOthers[a].pair[o]][1 - place].data() + row;
+      const float* own = c.shear[kOthers[a].pair[o]][place].data() + row;
+      const float* other = c.shear[kOthers[a].pair[o]][1 - place].data() + row;
       const From* mb = c.mass[b].data() + row;
       Real *s_low = k[S::kShearLow + o], *s_high = k[S::kShearHigh + o], *x_low = k[S::kCrossLow + o],
            *x_high = k[S::kCrossHigh + o];
