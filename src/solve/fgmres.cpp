@@ -207,8 +207,7 @@ double Fgmres::residualNorm() const {
 
 void Fgmres::divide(const KrylovMaps& maps) {
   parts_ = maps.parts;
-  const auto end = static_cast<std::ptrdiff_t>(maps.size);
-  appendParts(parts_.empty() ? 0 : static_cast<std::ptrdiff_t>(maps.rest), end, parts_);
+  appendParts(static_cast<std::ptrdiff_t>(maps.rest), static_cast<std::ptrdiff_t>(maps.size), parts_);
 }
 
 void Fgmres::extend(const KrylovMaps& maps, bool known, std::vector<float>& v, std::vector<float>& z,

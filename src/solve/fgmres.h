@@ -44,7 +44,7 @@ struct KrylovMaps {
   // Where solve() is told to go on from the call before. Entries from `rest` on are those in which the right side, and
   // of which the guess, may have changed since; the others of A x do not depend on them. May be missing.
   std::size_t rest = 0;
-  // All entries before `rest` that may be unknowns, no part across pieces of x; none: every entry.
+  // All entries before `rest` that may be unknowns, no part across pieces of x.
   Parts parts{};
   std::function<void(const SplitVector& x, std::vector<float>& r)> residual_rest{};    // these entries of b - A x
   std::function<void(const std::vector<float>& x, std::vector<float>& y)> complete{};  // these entries of P^-1 x

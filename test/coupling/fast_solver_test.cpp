@@ -101,7 +101,8 @@ TEST(FastSolver, ColumnsOfTheBodiesAreThePlainRows) {
       for (auto& field : y.velocity) clearHalo(l, field);
       clearHalo(l, y.pressure);
       std::vector<double> packed(4 * l.size, 0.0);
-      columns.addMotion(v.data(), packed.data());
+      const LiquidFields<double> fields = packedFields(l, packed.data());
+      columns.addMotion(v.data(), fields);
       double largest = 0.0;
       for (std::size_t i = 0; i < l.size; ++i) {
         for (int a = 0; a < 3; ++a) EXPECT_NEAR(packed[a * l.size + i], y.velocity[a][i], 1e-10);
@@ -109,6 +110,15 @@ TEST(FastSolver, ColumnsOfTheBodiesAreThePlainRows) {
         largest = std::max(largest, std::abs(y.pressure[i]));
       }
       EXPECT_GT(largest, 0.1);
+      // Taken away, and given back to the bit.
+      std::vector<double> before, other = packed;
+      for (double& value : other) value += gauss(random);
+      const std::vector<double> was = other;
+      columns.takeMotion(v.data(), packedFields(l, other.data()), before);
+      for (std::size_t i = 0; i < other.size(); ++i) EXPECT_NEAR(other[i], was[i] - packed[i], 1e-10);
+      EXPECT_NE(other, was);
+      columns.giveBack(before, packedFields(l, other.data()));
+      EXPECT_EQ(other, was);
       const Eigen::VectorXd own = gatherBodies(p, y.bodies).cwiseQuotient(scale);
       EXPECT_LT((columns.ownResistance() * v - own).norm(), 1e-11 * (1.0 + own.norm()));
 
@@ -124,7 +134,7 @@ TEST(FastSolver, ColumnsOfTheBodiesAreThePlainRows) {
       std::copy(x.pressure.begin(), x.pressure.end(), packed.begin() + 3 * l.size);
       op.apply(x, y);
       const Eigen::VectorXd forces = gatherBodies(p, y.bodies).cwiseQuotient(scale);
-      EXPECT_LT((columns.forces(packed.data()) - forces).norm(), 1e-11 * (1.0 + forces.norm()));
+      EXPECT_LT((columns.forces(packedFields<const double>(l, packed.data())) - forces).norm(), 1e-11 * (1.0 + forces.norm()));
     }
   }
 }

@@ -183,6 +183,36 @@ TEST_P(StokesStencil, DivergenceIsThePlainOne) {
   });
 }
 
+TEST_P(StokesStencil, ResidualsAreWhatIsLeftOfTheRightSide) {
+  FaceField<double> plain = plainMomentum();
+  addPressureForce(c, p_, -1.0, plain);
+  std::vector<double> flux(l.size), sources(l.size);
+  computeDivergence(c, U, flux);
+  // Nearly all of it is taken away: what is left has the digits of double precision.
+  constexpr double kLeft = 1e-6;
+  FaceField<double> b = plain;
+  for (auto& field : b) {
+    for (double& value : field) value *= 1.0 + kLeft;
+  }
+  for (std::size_t i = 0; i < l.size; ++i) sources[i] = -(1.0 + kLeft) * flux[i];
+  FaceField<float> r;
+  for (auto& field : r) field.assign(l.size, 0.0f);
+  std::vector<float> left(l.size, 0.0f);
+  momentumResidual(l, faces, c.viscous, view(std::as_const(b)), view(std::as_const(U)), p_.data(),
+                   {r[0].data(), r[1].data(), r[2].data()});
+  divergenceResidual(l, cells, sources.data(), view(std::as_const(U)), 3.0, left.data());
+  forEachCell([&](std::ptrdiff_t f) {
+    for (int a = 0; a < 3; ++a) {
+      if (c.mass[a][f] > 0.0) {
+        EXPECT_NEAR(r[a][f], kLeft * plain[a][f], 1e-11);
+      } else {
+        EXPECT_EQ(r[a][f], 0.0f);
+      }
+    }
+    EXPECT_NEAR(left[f], c.has_pressure[f] ? -3.0 * kLeft * flux[f] : 0.0, 1e-11);
+  });
+}
+
 TEST_P(StokesStencil, SmootherDividesByTheSmoothingDiagonal) {
   FaceField<double> diagonal, effective;
   diagonalAndTies(c, diagonal, effective);
