@@ -184,7 +184,7 @@ CoupledReport CoupledSystem::Impl::solve(const std::vector<Vector6d>& free_twist
   const bool converged = report.status == CoupledReport::Status::kConverged;
   if (converged) {
     state.twists = x.bodies;
-    p.results(x, gravity, state.liquid, report.divergence);
+    p.results(x, gravity, state.liquid, report.divergence, rhs.pressure);  // which has served
   }
   giveBack(state);
   if (!converged) return report;

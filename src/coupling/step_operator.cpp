@@ -124,18 +124,19 @@ void StepOperator::bodyForces(StepVector& x, std::vector<Vector6d>& forces) cons
   }
 }
 
-double StepOperator::largestDivergence(StepVector& x) {
+double StepOperator::largestDivergence(StepVector& x, std::vector<double>& divergence) const {
   const Lattice& l = coefficients_->lattice;
   for (auto& field : x.velocity) fillHalo(l, field);
-  samples_.resize(l.size, 0.0);
-  computeDivergence(*coefficients_, x.velocity, samples_);
+  divergence.resize(l.size, 0.0);
+  computeDivergence(*coefficients_, x.velocity, divergence);
   for (const BodyRow& row : rows_->divergence) {
-    samples_[row.sample] += row.coefficient.dot(x.bodies[row.body]);
+    divergence[row.sample] += row.coefficient.dot(x.bodies[row.body]);
   }
-  const double* divergence = samples_.data();
+  clearHalo(l, divergence);
+  const double* values = divergence.data();
   double largest = 0.0;
 #pragma omp parallel for simd schedule(static) reduction(max : largest)
-  for (std::size_t i = 0; i < l.size; ++i) largest = std::max(largest, std::abs(divergence[i]));
+  for (std::size_t i = 0; i < l.size; ++i) largest = std::max(largest, std::abs(values[i]));
   return largest;
 }
 

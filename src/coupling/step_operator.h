@@ -35,15 +35,15 @@ class StepOperator {
   // Fills the halos of x on periodic axes.
   void apply(StepVector& x, StepVector& y);
 
-  // The bodies' part of apply(), at the cost of the bodies' rows alone; and the largest entry of its divergence.
+  // The bodies' part of apply(), at the cost of the bodies' rows alone; and the largest entry of its divergence, which
+  // is returned, too.
   void bodyForces(StepVector& x, std::vector<Vector6d>& forces) const;
-  double largestDivergence(StepVector& x);
+  double largestDivergence(StepVector& x, std::vector<double>& divergence) const;
 
  private:
   const StaggeredCoefficients<double>* coefficients_ = nullptr;
   const BodyRows* rows_ = nullptr;
   StressSamples<double> stress_;
-  std::vector<double> samples_;  // work space, per sample
 };
 
 }  // namespace monolith

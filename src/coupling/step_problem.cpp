@@ -253,10 +253,10 @@ void StepProblem::apply(StepVector& x, StepVector& y) const {
 }
 
 void StepProblem::results(StepVector& x, const Eigen::Vector3d& gravity, std::vector<Wrench>& liquid,
-                          double& divergence) const {
+                          double& divergence, std::vector<double>& work) const {
   std::vector<Vector6d> forces(bodies->size());
   op_.bodyForces(x, forces);
-  divergence = op_.largestDivergence(x) / grid.h;
+  divergence = op_.largestDivergence(x, work) / grid.h;
   for (std::size_t b = 0; b < bodies->size(); ++b) {
     forces[b] += stuck_inertia[b] * (x.bodies[b] - stickingTwist(b, gravity));
   }

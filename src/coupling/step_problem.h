@@ -55,8 +55,9 @@ class StepProblem {
   void apply(StepVector& x, StepVector& y) const;
 
   // Wrench of the liquid on every body (mean over the step, at its centre of mass) and largest divergence (1/s), of a
-  // solution x that holds the twists of all bodies.
-  void results(StepVector& x, const Eigen::Vector3d& gravity, std::vector<Wrench>& liquid, double& divergence) const;
+  // solution x that holds the twists of all bodies. work: a field that the divergence of every cell may be written to.
+  void results(StepVector& x, const Eigen::Vector3d& gravity, std::vector<Wrench>& liquid, double& divergence,
+               std::vector<double>& work) const;
 
   // Velocity of the liquid (m/s) <-> the unknown U of the face, in place.
   void toUnknowns(FaceField<double>& velocity) const;

@@ -64,8 +64,9 @@ StepVector only(StepVector x, int block) {
 
 double divergence(const RandomStep& step, StepVector x) {
   std::vector<Wrench> liquid;
+  std::vector<double> work;
   double out = 0.0;
-  step.problem.results(x, Eigen::Vector3d::Zero(), liquid, out);
+  step.problem.results(x, Eigen::Vector3d::Zero(), liquid, out, work);
   return out;
 }
 
@@ -247,8 +248,9 @@ TEST_P(StepProperties, BuoyancyIsTheWeightOfTheDiscreteVolume) {
       const CoupledReport report = direct.solve(rhs, options, x);
       ASSERT_EQ(report.status, CoupledReport::Status::kConverged) << report.message;
       std::vector<Wrench> wrenches;
+      std::vector<double> work;
       double largest_divergence = 0.0;
-      problem.results(x, gravity, wrenches, largest_divergence);
+      problem.results(x, gravity, wrenches, largest_divergence, work);
       const double expected = kDensity * kGravity * discrete;
       EXPECT_NEAR(wrenches[0].force[2], expected, 1e-9 * expected);
       EXPECT_LT(wrenches[0].force.head<2>().norm(), 1e-9 * expected);
@@ -304,8 +306,9 @@ TEST(StepMomentum, GoesToWhatIsHeldFast) {
     const Eigen::Vector3d change =
         step.momentum(x.velocity, x.bodies) - step.momentum(step.free_velocity, step.free_twists);
     std::vector<Wrench> liquid;
+    std::vector<double> work;
     double divergence = 0.0;
-    step.problem.results(x, Eigen::Vector3d::Zero(), liquid, divergence);
+    step.problem.results(x, Eigen::Vector3d::Zero(), liquid, divergence, work);
     const Eigen::Vector3d received = liquid[0].force * (step.problem.dt / step.problem.impulse_scale);
     EXPECT_GT(received.norm(), 1e-3);
     double size = 1.0;
