@@ -44,34 +44,35 @@ inline void momentum(const Lattice& l, int a, std::ptrdiff_t f, const Real* k, c
   }
 }
 
-// A U - C^T p
-template <class Real>
+// store(i, A U - C^T p) of the lanes from f on.
+template <class Real, class Store>
 inline void momentumAndPressure(const Lattice& l, int a, std::ptrdiff_t f, const Real* k, bool viscous,
-                                const Faces<const Real>& U, const Real* p, Real* out) {
+                                const Faces<const Real>& U, const Real* p, Store&& store) {
+  const Real *here = p + f, *before = here - l.stride[a], *open = k + S::kOpen * kLanes;
   if (viscous) {
-    momentum(l, a, f, k, U, out);
+    Real Au[kLanes];
+    momentum(l, a, f, k, U, Au);
+#pragma omp simd
+    for (int i = 0; i < kLanes; ++i) store(i, Au[i] - open[i] * (before[i] - here[i]));
   } else {
     const Real* u = U[a] + f;
 #pragma omp simd
-    for (int i = 0; i < kLanes; ++i) out[i] = k[i] * u[i];
+    for (int i = 0; i < kLanes; ++i) store(i, k[i] * u[i] - open[i] * (before[i] - here[i]));
   }
-  const Real *here = p + f, *before = here - l.stride[a];
-#pragma omp simd
-  for (int i = 0; i < kLanes; ++i) out[i] -= k[S::kOpen * kLanes + i] * (before[i] - here[i]);
 }
 
-// C U, and whether there is a cell with pressure: it has at least one open face.
-template <class Real>
-inline void divergence(const Lattice& l, std::ptrdiff_t c, const Real* k, const Faces<const Real>& U, Real* flux,
-                       bool* any) {
+// store(i, C U, whether the cell has pressure) of the lanes from c on: one with pressure has at least one open face.
+template <class Real, class Store>
+inline void divergence(const Lattice& l, std::ptrdiff_t c, const Real* k, const Faces<const Real>& U, Store&& store) {
   const auto sy = l.stride[1], sz = l.stride[2];
   const Real *u = U[0] + c, *v = U[1] + c, *w = U[2] + c;
 #pragma omp simd
   for (int i = 0; i < kLanes; ++i) {
-    flux[i] = k[3 * kLanes + i] * u[i + 1] - k[i] * u[i] + k[4 * kLanes + i] * v[i + sy] - k[kLanes + i] * v[i] +
-              k[5 * kLanes + i] * w[i + sz] - k[2 * kLanes + i] * w[i];
-    any[i] = k[i] + k[kLanes + i] + k[2 * kLanes + i] + k[3 * kLanes + i] + k[4 * kLanes + i] + k[5 * kLanes + i] >
-             Real(0);
+    const Real flux = k[3 * kLanes + i] * u[i + 1] - k[i] * u[i] + k[4 * kLanes + i] * v[i + sy] -
+                      k[kLanes + i] * v[i] + k[5 * kLanes + i] * w[i + sz] - k[2 * kLanes + i] * w[i];
+    const Real open =
+        k[i] + k[kLanes + i] + k[2 * kLanes + i] + k[3 * kLanes + i] + k[4 * kLanes + i] + k[5 * kLanes + i];
+    store(i, flux, open > Real(0));
   }
 }
 
@@ -214,9 +215,8 @@ void applyMomentum(const Lattice& l, const FaceBlocks<Real>& blocks, bool viscou
                    const Real* p, const Faces<Real>& y) {
   countWork(blocks.lanes(), (viscous ? kMomentumFlops : 1.0) + 3.0, sizeof(Real) * (2.0 + 1.0 / 3.0));
   blocks.forEach([&](int a, std::ptrdiff_t f, const Real* k) {
-    Real sum[kLanes];
-    momentumAndPressure(l, a, f, k, viscous, U, p, sum);
-    std::copy_n(sum, kLanes, y[a] + f);
+    Real* out = y[a] + f;
+    momentumAndPressure(l, a, f, k, viscous, U, p, [=](int i, Real sum) { out[i] = sum; });
   });
 }
 
@@ -226,12 +226,10 @@ void momentumResidual(const Lattice& l, const FaceBlocks<double>& blocks, bool v
   countWork(blocks.lanes(), (viscous ? kMomentumFlops : 1.0) + 4.0,
             sizeof(double) * (2.0 + 1.0 / 3.0) + sizeof(float));
   blocks.forEach([&](int a, std::ptrdiff_t f, const double* k) {
-    double sum[kLanes];
-    momentumAndPressure(l, a, f, k, viscous, U, p, sum);
     const double* right = b[a] + f;
     float* out = r[a] + f;
-#pragma omp simd
-    for (int i = 0; i < kLanes; ++i) out[i] = static_cast<float>(right[i] - sum[i]);
+    momentumAndPressure(l, a, f, k, viscous, U, p,
+                        [=](int i, double sum) { out[i] = static_cast<float>(right[i] - sum); });
   });
 }
 
@@ -242,16 +240,14 @@ void applyDivergence(const Lattice& l, const CellBlocks<Real>& blocks, const Fac
                      const Real* g, Real* y) {
   countWork(blocks.lanes(), g != nullptr ? 13.0 : 12.0, sizeof(Real) * (g != nullptr ? 5.0 : 4.0));
   blocks.forEach([&](int, std::ptrdiff_t c, const Real* k) {
-    Real start[kLanes] = {}, flux[kLanes];
-    bool any[kLanes];
-    divergence(l, c, k, U, flux, any);
+    Real start[kLanes] = {};
     if (g != nullptr) {
 #pragma omp simd
       for (int i = 0; i < kLanes; ++i) start[i] = factor * g[c + i];
     }
     Real* out = y + c;
-#pragma omp simd
-    for (int i = 0; i < kLanes; ++i) out[i] = any[i] ? start[i] - flux[i] : Real(0);
+    const Real* from = start;
+    divergence(l, c, k, U, [=](int i, Real flux, bool has) { out[i] = has ? from[i] - flux : Real(0); });
   });
 }
 
@@ -260,13 +256,11 @@ void divergenceResidual(const Lattice& l, const CellBlocks<double>& blocks, cons
                         const Faces<const double>& U, double weight, float* r) {
   countWork(blocks.lanes(), 13.0, 4.0 * sizeof(double) + sizeof(float));
   blocks.forEach([&](int, std::ptrdiff_t c, const double* k) {
-    double flux[kLanes];
-    bool any[kLanes];
-    divergence(l, c, k, U, flux, any);
     const double* right = b + c;
     float* out = r + c;
-#pragma omp simd
-    for (int i = 0; i < kLanes; ++i) out[i] = any[i] ? static_cast<float>(weight * (right[i] + flux[i])) : 0.0f;
+    divergence(l, c, k, U, [=](int i, double flux, bool has) {
+      out[i] = has ? static_cast<float>(weight * (right[i] + flux)) : 0.0f;
+    });
   });
 }
 
