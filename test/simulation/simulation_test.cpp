@@ -27,6 +27,7 @@ Scene tank(double fill_level, double viscosity) {
 TEST(Simulation, AnEmptyTankIsRigidBodyDynamicsAndPaysForNothingElse) {
   Scene scene = tank(0.0, 1.0);
   scene.bodies.push_back(sphereBody("ball", 0.02, 500.0, {0.08, 0.08, 0.12}));
+  scene.solver.tolerance = 1e-10;
   Simulation simulation(scene);
   for (int i = 0; i < 10; ++i) {
     const StepReport r = simulation.step();
