@@ -81,9 +81,9 @@ void LiquidPreconditioner::apply(const float* r, float flux_scale, float* x) {
   const auto size = static_cast<std::ptrdiff_t>(l.size);
   const Faces<const float> b{r, r + size, r + 2 * size};
   const Faces<float> out{x, x + size, x + 2 * size};
-  Faces<const float> u{x, x + size, x + 2 * size};
+  const Faces<const float> u{x, x + size, x + 2 * size};
   if (problem_->coefficients.viscous) {
-    u = velocity_.cycle(b);
+    velocity_.cycle(b, out);
   } else {
     // The diagonal is all there is.
     chebyshevStart(*faces_, b, 1.0f, out, out);

@@ -23,7 +23,7 @@ void Permeability::set(const StepProblem& problem, double largest_number, Veloci
   lasted_ = generation_ == problem.coarse.generation();
   generation_ = problem.coarse.generation();
   if (!lasted_) {
-    coarse_ = velocity.coarseCycle(level.mass);
+    velocity.coarseCycle(level.mass, coarse_);
     const float least = static_cast<float>(std::min(1.0, kLeast / largest_number));
     for (auto& field : coarse_) {
       for (float& k : field) k = std::max(k, least);

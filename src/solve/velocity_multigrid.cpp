@@ -11,7 +11,8 @@ constexpr float kRatio = 6.0f;
 constexpr float kCoarsestRatio = 60.0f;  // the coarsest level is to be solved, not smoothed
 
 Faces<float> view(FaceField<float>& f) { return {f[0].data(), f[1].data(), f[2].data()}; }
-Faces<const float> constView(FaceField<float>& f) { return {f[0].data(), f[1].data(), f[2].data()}; }
+Faces<const float> constView(const FaceField<float>& f) { return {f[0].data(), f[1].data(), f[2].data()}; }
+Faces<const float> constView(const Faces<float>& f) { return {f[0], f[1], f[2]}; }
 
 }  // namespace
 
@@ -32,8 +33,10 @@ void VelocityMultigrid::set(const Lattice& lattice, const FaceBlocks<float>& fin
     if (i > 0) buildFaceBlocks(coarse[i], level.own, &level.own_transfer, nullptr);
     // Zero where nothing is written: other faces than last time may have an unknown now.
     for (int a = 0; a < 3; ++a) {
-      for (auto* fields : {&level.x, &level.next, &level.d}) level.blocks->clear(a, level.build, (*fields)[a]);
-      if (i > 0) assignZero(level.lattice.size, level.b[a]);
+      for (auto* fields : {&level.own_next, &level.d}) level.blocks->clear(a, level.build, (*fields)[a]);
+      if (i == 0) continue;
+      level.blocks->clear(a, level.build, level.own_x[a]);
+      assignZero(level.lattice.size, level.b[a]);
     }
     level.build = level.blocks->build();
   }
@@ -45,13 +48,13 @@ void VelocityMultigrid::smooth(Level& level, int degree, bool from_zero) {
   for (int step = 0; step < degree; ++step) {
     if (step > 0) recurrence.next();
     if (from_zero && step == 0) {
-      chebyshevStart(*level.blocks, level.right, recurrence.scale(), view(level.d), view(level.x));
+      chebyshevStart(*level.blocks, level.right, recurrence.scale(), view(level.d), level.x);
     } else {
       chebyshevStep(l, *level.blocks, constView(level.x), level.right, recurrence.keep(), recurrence.scale(),
-                    view(level.d), view(level.next));
-      level.x.swap(level.next);
+                    view(level.d), level.next);
+      std::swap(level.x, level.next);
     }
-    for (auto& field : level.x) fillHalo(l, field);
+    for (float* field : level.x) fillHalo(l, field);
   }
 }
 
@@ -64,31 +67,36 @@ void VelocityMultigrid::descend(std::size_t index) {
   smooth(level, degree_, true);
   const Lattice& l = level.lattice;
   Level& coarse = levels_[index + 1];
-  transferredResidual(l, *level.blocks, constView(level.x), level.right, view(level.next));
+  transferredResidual(l, *level.blocks, constView(level.x), level.right, level.next);
   for (int a = 0; a < 3; ++a) {
     fillHalo(l, level.next[a]);
-    restrictResidual(l, a, level.next[a].data(), coarse.lattice, coarse.blocks->planes(), coarse.b[a].data());
+    restrictResidual(l, a, level.next[a], coarse.lattice, coarse.blocks->planes(), coarse.b[a].data());
   }
-  coarse.right = constView(coarse.b);
-  descend(index + 1);
+  cycleFrom(index + 1, constView(coarse.b), view(coarse.own_x));
   for (int a = 0; a < 3; ++a) {
-    prolongateFaces(coarse.lattice, a, coarse.x[a].data(), l, level.blocks->planes(), (*level.transfer)[a].data(),
-                    level.x[a].data());
+    prolongateFaces(coarse.lattice, a, coarse.own_x[a].data(), l, level.blocks->planes(), (*level.transfer)[a].data(),
+                    level.x[a]);
     fillHalo(l, level.x[a]);
   }
   smooth(level, degree_, false);
 }
 
-const FaceField<float>& VelocityMultigrid::coarseCycle(const FaceField<float>& b) {
-  levels_[1].right = {b[0].data(), b[1].data(), b[2].data()};
-  descend(1);
-  return levels_[1].x;
+void VelocityMultigrid::cycleFrom(std::size_t index, const Faces<const float>& b, const Faces<float>& x) {
+  Level& level = levels_[index];
+  level.right = b;
+  // Every smoothing step but the first takes a turn.
+  const int steps = index + 1 < levels_.size() ? 2 * degree_ : index == 0 ? 2 * degree_ : kCoarsestDegree;
+  const bool odd = (steps - 1) % 2 != 0;
+  level.x = odd ? view(level.own_next) : x;
+  level.next = odd ? x : view(level.own_next);
+  descend(index);
 }
 
-Faces<const float> VelocityMultigrid::cycle(const Faces<const float>& b) {
-  levels_[0].right = b;
-  descend(0);
-  return constView(levels_[0].x);
+void VelocityMultigrid::coarseCycle(const FaceField<float>& b, FaceField<float>& x) {
+  for (auto& field : x) assignZero(levels_[1].lattice.size, field);
+  cycleFrom(1, constView(b), view(x));
 }
+
+void VelocityMultigrid::cycle(const Faces<const float>& b, const Faces<float>& x) { cycleFrom(0, b, x); }
 
 }  // namespace monolith

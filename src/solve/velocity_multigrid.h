@@ -23,26 +23,30 @@ class VelocityMultigrid {
   void set(const Lattice& lattice, const FaceBlocks<float>& fine, const FaceField<float>& transfer,
            const std::vector<StaggeredCoefficients<float>>& coarse, std::size_t count, long generation,
            int smoother_degree);
-  // Approximate solution x of A x = b, zero where there is no unknown; valid until the next call.
-  Faces<const float> cycle(const Faces<const float>& b);
-  // The same from the level below the finest on, of which there must be one; the halo is filled.
-  const FaceField<float>& coarseCycle(const FaceField<float>& b);
+  // Approximate solution x of A x = b. x is zero where there is no unknown, before and after; its halo is filled.
+  void cycle(const Faces<const float>& b, const Faces<float>& x);
+  // The same from the level below the finest on, of which there must be one.
+  void coarseCycle(const FaceField<float>& b, FaceField<float>& x);
 
  private:
   struct Level {
     Lattice lattice;
     FaceBlocks<float> own;
     const FaceBlocks<float>* blocks = nullptr;
-    FaceField<float> own_transfer, x, next, b, d;
+    FaceField<float> own_transfer, own_x, own_next, b, d;  // own_x: of coarse levels
     const FaceField<float>* transfer = nullptr;
     ChebyshevRange range;
     Faces<const float> right{};
+    // Of a cycle: an iterate and the next take turns.
+    Faces<float> x{}, next{};
     long generation = -1;  // of a coarse level
     long build = -1;       // of the finest level's blocks, that its fields have followed
   };
 
   void smooth(Level& level, int degree, bool from_zero);
   void descend(std::size_t index);
+  // A cycle from level `index` on, whose solution is in x.
+  void cycleFrom(std::size_t index, const Faces<const float>& b, const Faces<float>& x);
 
   std::vector<Level> levels_;
   int degree_ = 2;
