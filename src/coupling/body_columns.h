@@ -1,6 +1,6 @@
 #pragma once
-// The bodies' columns of the step over the liquid's unknowns: B = [A_uv; -C_v] as one sparse column block per free body,
-// rows of six numbers, and the dense A_vv, from the rows of body_rows.h.
+// The bodies' columns of the step over the liquid's unknowns: B = [A_uv; -C_v] as a list of rows of six numbers, each of
+// one unknown and one free body, and the dense A_vv, from the rows of body_rows.h.
 
 #include <Eigen/Dense>
 #include <array>
@@ -15,7 +15,11 @@ namespace monolith {
 template <class Real>
 using LiquidFields = std::array<Real*, 4>;
 
-// Where they follow each other.
+// Values at some places of each.
+template <class Real>
+using LiquidPlaces = std::array<std::vector<Real>, 4>;
+
+// The fields where they follow each other.
 template <class Real>
 LiquidFields<Real> packedFields(const Lattice& lattice, Real* packed) {
   const auto size = static_cast<std::ptrdiff_t>(lattice.size);
@@ -33,8 +37,8 @@ class BodyColumns {
   // liquid += B v
   void addMotion(const Real* v, const LiquidFields<Real>& liquid) const;
   // liquid -= B v, bit for bit undone by giveBack() of what was there.
-  void takeMotion(const Real* v, const LiquidFields<Real>& liquid, std::vector<Real>& before) const;
-  void giveBack(const std::vector<Real>& before, const LiquidFields<Real>& liquid) const;
+  void takeMotion(const Real* v, const LiquidFields<Real>& liquid, LiquidPlaces<Real>& before) const;
+  void giveBack(const LiquidPlaces<Real>& before, const LiquidFields<Real>& liquid) const;
   // B^T liquid
   Eigen::VectorXd forces(const LiquidFields<const Real>& liquid) const;
   const Eigen::MatrixXd& ownResistance() const { return A_vv_; }
@@ -43,28 +47,24 @@ class BodyColumns {
   template <class>
   friend class BodyColumns;
   struct Entry {
-    std::int32_t place;  // in its field
+    std::int32_t place, body;  // in its field, among the free ones
     Real coefficient[6];
-  };
-  // Of the columns: faces of each axis, and cells. Different unknowns, so threads may take one each.
-  static constexpr int kKinds = 4;
 
-  std::size_t bodies() const { return begin_.size() / kKinds; }
-  // f(entry, its number, its body) of a kind.
-  template <class EntryFunction>
-  void forEachOf(int kind, EntryFunction&& f) const {
-    const std::size_t n = bodies();
-    for (std::size_t b = 0; b < n; ++b) {
-      for (std::size_t i = begin_[kind * n + b]; i < begin_[kind * n + b + 1]; ++i) f(entries_[i], i, b);
+    Real times(const Real* motion) const {
+      const Real *k = coefficient, *w = motion + 6 * body;
+      return k[0] * w[0] + k[1] * w[1] + k[2] * w[2] + k[3] * w[3] + k[4] * w[4] + k[5] * w[5];
     }
-  }
-  static Real product(const Entry& entry, const Real* w) {
-    const Real* k = entry.coefficient;
-    return k[0] * w[0] + k[1] * w[1] + k[2] * w[2] + k[3] * w[3] + k[4] * w[4] + k[5] * w[5];
-  }
+  };
+  class Collector;
+  // Of each field: different unknowns, so threads may take one each.
+  static constexpr int kFields = 4;
 
-  std::vector<Entry> entries_;      // by kinds, within them by bodies
-  std::vector<std::size_t> begin_;  // of each kind and body; one more at the end
+  // Of all fields.
+  std::size_t count() const;
+  void collectFaces(const StepProblem& problem, int axis);
+  void collectCells(const StepProblem& problem);
+
+  std::array<std::vector<Entry>, kFields> entries_;  // by first appearance
   Eigen::MatrixXd A_vv_;
 };
 

@@ -102,7 +102,7 @@ class PackedSystem {
   LiquidPreconditioner preconditioner_;
   Fgmres krylov_;
   double flux_weight_ = 1.0;
-  std::vector<double> before_;  // of the right side, where the bodies' motion is taken from it
+  LiquidPlaces<double> before_;  // of the right side, where the bodies' motion is taken from it
   Eigen::VectorXd scale_;       // unknown = scale * twist
   Eigen::MatrixXd bodies_;      // A_vv with inertia
   Eigen::MatrixXd resistance_;  // of the free bodies, physical units

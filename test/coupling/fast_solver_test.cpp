@@ -111,7 +111,8 @@ TEST(FastSolver, ColumnsOfTheBodiesAreThePlainRows) {
       }
       EXPECT_GT(largest, 0.1);
       // Taken away, and given back to the bit.
-      std::vector<double> before, other = packed;
+      LiquidPlaces<double> before;
+      std::vector<double> other = packed;
       for (double& value : other) value += gauss(random);
       const std::vector<double> was = other;
       columns.takeMotion(v.data(), packedFields(l, other.data()), before);
