@@ -94,6 +94,7 @@ void StatePublisher::publishConstant() {
 }
 
 void StatePublisher::publish(const StepReport& report, double real_time_factor, What what) {
+  const ros::SteadyTime start = ros::SteadyTime::now();
   publishClock();
   const std::vector<BodyState> states = simulation_.bodyStates();
   const auto isWanted = [&](Rhythm& rhythm) {
@@ -109,6 +110,7 @@ void StatePublisher::publish(const StepReport& report, double real_time_factor, 
   }
   if (isWanted(marker_rhythm_)) publishMarkers(states);
   if (isWanted(surface_rhythm_)) publishSurface();
+  publishing_sec_ += (ros::SteadyTime::now() - start).toSec();
   if (isWanted(statistics_rhythm_)) publishStatistics(report, real_time_factor);
 }
 
@@ -185,6 +187,8 @@ void StatePublisher::publishSurface() {
 void StatePublisher::publishStatistics(const StepReport& report, double real_time_factor) {
   monolith_tank::Statistics message = toStatistics(report, real_time_factor);
   message.header = header();
+  message.publishing_time = publishing_sec_;
+  publishing_sec_ = 0.0;
   statistics_.publish(message);
   statistics_rhythm_.last_step = report.step;  // also of a step that has failed
 }

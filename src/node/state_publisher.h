@@ -55,6 +55,7 @@ class StatePublisher {
     long last_step = -1;
   };
   Rhythm state_rhythm_, surface_rhythm_, statistics_rhythm_, marker_rhythm_;
+  double publishing_sec_ = 0.0;  // wall time, since the last statistics
   ros::Publisher clock_, tf_, tf_static_, states_, surface_, statistics_, markers_, tank_;
   std::vector<ros::Publisher> odometry_;
   std::vector<std::vector<BodyMarker>> body_markers_;

@@ -154,7 +154,9 @@ class InterfaceTest(unittest.TestCase):
         rospy.rostime.wallsleep(0.3)  # what is latched
         for collector in collectors.values():
             collector.clear()
+        begin = time.monotonic()
         self.tank.step(50)  # 1 s
+        taken = time.monotonic() - begin
         rospy.rostime.wallsleep(0.5)
         expected = {'tf': 25, 'states': 25, 'odom': 25, 'surface': 10, 'statistics': 10, 'markers': 25}
         for name, count in expected.items():
@@ -177,6 +179,9 @@ class InterfaceTest(unittest.TestCase):
         self.assertTrue(last.committed)
         self.assertTrue(last.liquid and last.viscosity and last.free_surface)
         self.assertGreater(last.total_time, 0.0)
+        publishing = [message.publishing_time for message in collectors['statistics'].messages]
+        self.assertGreater(min(publishing), 0.0)
+        self.assertLess(sum(publishing) + last.total_time, taken)
         volume = 0.16 * 0.16 * 0.08
         self.assertGreater(last.liquid_volume, 0.8 * volume)
         self.assertLess(last.liquid_volume, volume)
