@@ -181,8 +181,7 @@ void BodyColumns<Real>::addMotion(const Real* v, const LiquidFields<Real>& liqui
 }
 
 template <class Real>
-void BodyColumns<Real>::takeMotion(const Real* v, const LiquidFields<Real>& liquid,
-                                   LiquidPlaces<Real>& before) const {
+void BodyColumns<Real>::takeMotion(const Real* v, const LiquidFields<Real>& liquid, LiquidPlaces<Real>& before) const {
   countWork(count(), 12.0, sizeof(Entry) + 3.0 * sizeof(Real));
 #pragma omp parallel for schedule(dynamic) if (count() >= kEntriesWorthSharing)
   for (int field = 0; field < kFields; ++field) {

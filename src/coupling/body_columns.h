@@ -1,6 +1,6 @@
 #pragma once
-// The bodies' columns of the step over the liquid's unknowns: B = [A_uv; -C_v] as a list of rows of six numbers, each of
-// one unknown and one free body, and the dense A_vv, from the rows of body_rows.h.
+// The bodies' columns of the step over the liquid's unknowns: B = [A_uv; -C_v] as a list of rows of six numbers, each
+// of one unknown and one free body, and the dense A_vv, from the rows of body_rows.h.
 
 #include <Eigen/Dense>
 #include <array>

@@ -100,7 +100,8 @@ CoupledReport FastSolver::solveWithContacts(StepVector& rhs_fields, const Contac
   system.updateSchur();
   m.rhs = system.forces(rhs_fields);
   m.x = system.motion(x_fields);
-  double rhs_norm = std::hypot(m.rhs.velocity_norm, m.rhs.pressure_norm, bodiesNorm(p, gatherBodies(p, rhs_fields.bodies)));
+  double rhs_norm =
+      std::hypot(m.rhs.velocity_norm, m.rhs.pressure_norm, bodiesNorm(p, gatherBodies(p, rhs_fields.bodies)));
   if (!std::isfinite(rhs_norm)) return m.notConverged(report, "what acts on liquid and bodies is too large a number");
   const Eigen::Index count = contacts.count();
 

@@ -68,8 +68,8 @@ void PackedSystem::updateSchur() {
                     p.viscous_number <= kStaleNumber * resistance_number_ &&
                     resistance_number_ <= kStaleNumber * p.viscous_number && !stale_;
   if (!same) {
-    resistance_ = scale_.asDiagonal() * BodySchur::resistance(lattice(), columns_single_, preconditioner_) *
-                  scale_.asDiagonal();
+    resistance_ =
+        scale_.asDiagonal() * BodySchur::resistance(lattice(), columns_single_, preconditioner_) * scale_.asDiagonal();
     resistance_of_ = p.free;
     resistance_number_ = p.viscous_number;
     fresh_cost_ = lost_ = 0.0;

@@ -2,9 +2,9 @@
 // The step's linear system as `fast` solves it: all unknowns in one vector - U by components, p^, lattice.size each,
 // the twists of the free bodies times their scale, the impulses of the contacts in the border - and flexible GMRES with
 // its preconditioner. The right side and the solution stay in the fields that hold them (BorderedVector); the basis of
-// GMRES is packed. The preconditioner: the liquid's (liquid_preconditioner.h), then an approximate Schur complement S of the bodies,
-// their inertia and their resistance to motion in this liquid, bordered by the contacts. S ages slowly and is kept
-// while it serves.
+// GMRES is packed. The preconditioner: the liquid's (liquid_preconditioner.h), then an approximate Schur complement S
+// of the bodies, their inertia and their resistance to motion in this liquid, bordered by the contacts. S ages slowly
+// and is kept while it serves.
 //
 // The rows of the divergence are multiplied by 2 N where that is more than one: so much of a stress does a divergence
 // make, and a residual that weighs it less lets velocities pass whose strain rates are wrong.
@@ -26,7 +26,7 @@ namespace monolith {
 struct BorderedVector {
   FaceField<double>* velocity = nullptr;
   std::vector<double>* pressure = nullptr;
-  std::vector<double> rest;  // unknowns of the free bodies, then of the border
+  std::vector<double> rest;                         // unknowns of the free bodies, then of the border
   double velocity_norm = 0.0, pressure_norm = 0.0;  // of forces
 
   LiquidFields<double> fields() const {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <type_traits>
 
 #include "solve/blocked_sum.h"
@@ -24,6 +25,13 @@ constexpr double kPoorCycle = 0.1;
 // The estimate of a cycle may be a little off: aim lower than the goal.
 constexpr double kMargin = 0.9;
 constexpr double kSingleRoundOff = 1e-5;  // of a norm
+
+// What the next cycle in single precision is to reduce the residual by: as many as it takes share `wanted` equally,
+// which takes the fewest directions at once.
+double shareOfCycle(double wanted) {
+  const double order = std::log(std::max(wanted, std::numeric_limits<double>::min()));
+  return std::exp(order / std::ceil(order / std::log(kLeastReduction)));
+}
 
 std::size_t entries(const Parts& parts) {
   std::size_t sum = 0;
@@ -297,8 +305,7 @@ KrylovReport Fgmres::solve(const KrylovMaps& maps, const SplitVector& x, const K
   int length = std::min(options.shortest_cycle, options.longest_cycle);
   while (!report.converged && report.iterations < options.maximum_iterations && std::isfinite(report.residual)) {
     const double wanted = kMargin * target / report.residual;
-    // As many cycles as single precision takes share it equally, which takes the fewest directions at once.
-    const double goal = single ? std::pow(wanted, 1.0 / std::ceil(std::log(wanted) / std::log(kLeastReduction))) : wanted;
+    const double goal = single ? shareOfCycle(wanted) : wanted;
     const int most = std::min(length, options.maximum_iterations - report.iterations);
     const int used = single ? cycle(maps, report.residual, goal, most, first_known, single_, x)
                             : cycle(maps, report.residual, goal, most, false, double_, x);

@@ -1,10 +1,11 @@
 #pragma once
 // Flexible GMRES (Saad 1993, SIAM J. Sci. Comput. 14, 461), right preconditioned, inside iterative refinement: the
 // residual b - A x is formed in double precision at each restart and kept in single, the correction is found on vectors
-// half as wide as x. b stays with whoever forms the residual; x may lie in pieces. Keeping the directions P^-1 v beside the basis costs memory and pays: the operator sees their
-// rounding, where a correction P^-1 (V y) formed at the end carries that of a large, smooth pressure into the solution.
-// Where single precision ends short of the goal, the cycles that follow are in double; the preconditioner stays single.
-// Minimises |b - A x|_2 over each cycle; the residual that it reports is the recomputed one.
+// half as wide as x. b stays with whoever forms the residual; x may lie in pieces. Keeping the directions P^-1 v beside
+// the basis costs memory and pays: the operator sees their rounding, where a correction P^-1 (V y) formed at the end
+// carries that of a large, smooth pressure into the solution. Where single precision ends short of the goal, the cycles
+// that follow are in double; the preconditioner stays single. Minimises |b - A x|_2 over each cycle; the residual that
+// it reports is the recomputed one.
 
 #include <Eigen/Dense>
 #include <functional>
@@ -35,8 +36,8 @@ struct KrylovReport {
 // What is to be solved. x may be changed where that doesn't change A x (halos). Entries that are no unknowns need not
 // be written: they are zero before.
 struct KrylovMaps {
-  std::size_t size = 0;     // entries
-  double right_norm = 0.0;  // |b|_2
+  std::size_t size = 0;                                                       // entries
+  double right_norm = 0.0;                                                    // |b|_2
   std::function<void(const SplitVector& x, std::vector<float>& r)> residual;  // r = b - A x
   std::function<void(std::vector<double>& x, std::vector<double>& y)> apply;  // y = A x, where double is needed
   std::function<void(std::vector<float>& x, std::vector<float>& y)> apply_single;

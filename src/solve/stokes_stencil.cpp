@@ -223,8 +223,7 @@ void applyMomentum(const Lattice& l, const FaceBlocks<Real>& blocks, bool viscou
 // Streams U, p, b and r: 68 bytes a cell; bound by memory.
 void momentumResidual(const Lattice& l, const FaceBlocks<double>& blocks, bool viscous, const Faces<const double>& b,
                       const Faces<const double>& U, const double* p, const Faces<float>& r) {
-  countWork(blocks.lanes(), (viscous ? kMomentumFlops : 1.0) + 4.0,
-            sizeof(double) * (2.0 + 1.0 / 3.0) + sizeof(float));
+  countWork(blocks.lanes(), (viscous ? kMomentumFlops : 1.0) + 4.0, sizeof(double) * (2.0 + 1.0 / 3.0) + sizeof(float));
   blocks.forEach([&](int a, std::ptrdiff_t f, const double* k) {
     const double* right = b[a] + f;
     float* out = r[a] + f;

@@ -135,7 +135,8 @@ TEST(FastSolver, ColumnsOfTheBodiesAreThePlainRows) {
       std::copy(x.pressure.begin(), x.pressure.end(), packed.begin() + 3 * l.size);
       op.apply(x, y);
       const Eigen::VectorXd forces = gatherBodies(p, y.bodies).cwiseQuotient(scale);
-      EXPECT_LT((columns.forces(packedFields<const double>(l, packed.data())) - forces).norm(), 1e-11 * (1.0 + forces.norm()));
+      EXPECT_LT((columns.forces(packedFields<const double>(l, packed.data())) - forces).norm(),
+                1e-11 * (1.0 + forces.norm()));
     }
   }
 }

@@ -234,9 +234,8 @@ TEST(Fgmres, NothingIsLeftOfUnknownsThatAreNoMore) {
       for (std::size_t i = 0; i < kSize; i += stride) to[i] = static_cast<float>(b[i] - times[i]);
     };
     const double size = std::sqrt(std::inner_product(b.begin(), b.end(), b.begin(), 0.0));
-    const KrylovReport report =
-        krylov.solve({kSize, size, left, scale(false), scale(false), scale(true)},
-                     {{x.data()}, static_cast<std::ptrdiff_t>(kSize)}, options);
+    const KrylovReport report = krylov.solve({kSize, size, left, scale(false), scale(false), scale(true)},
+                                             {{x.data()}, static_cast<std::ptrdiff_t>(kSize)}, options);
     EXPECT_TRUE(report.converged) << report.residual;
     iterations[stride - 1] = report.iterations;
     for (std::size_t i = 0; i < kSize; ++i) {
