@@ -14,7 +14,7 @@ constexpr double kFirstForcing = 1e-2;  // relative residual of the first linear
 constexpr double kForcing = 0.02;       // ... of the others, relative to what the viscosity left before
 // Round-off of a solve in which viscosities differ by orders of magnitude: no residual below it is asked for.
 constexpr double kLeastTolerance = 1e-9;
-constexpr double kGrowth = 3.0;  // of the residual over its least so far: the acceleration has gone astray
+constexpr double kGrowth = 1.5;  // of the residual over its least so far: the acceleration has gone astray
 
 // Extrapolation knows no limits; the law does.
 void clampField(const ViscosityLaw& law, double reference, ViscosityField& field) {
@@ -60,6 +60,7 @@ CoupledReport solveNonNewtonian(CoupledSystem& system, const ViscosityLaw& law, 
   inner.tolerance = std::max(linear_goal, kFirstForcing);
   CoupledReport total;
   double least = 0.0;
+  bool extrapolated = false;  // the viscosities, beyond those of a solution
   rheology = RheologyReport();
   while (rheology.iterations < maximum_iterations) {
     ++rheology.iterations;
@@ -73,6 +74,13 @@ CoupledReport solveNonNewtonian(CoupledSystem& system, const ViscosityLaw& law, 
     total.residual = solved.residual;
     total.contact_residual = solved.contact_residual;
     total.divergence = solved.divergence;
+    if (solved.status == CoupledReport::Status::kNotConverged && extrapolated) {
+      // The acceleration has led to viscosities that are too hard to solve for: on from those of the last solution.
+      now = next;
+      anderson.forget();
+      extrapolated = false;
+      continue;
+    }
     if (solved.status != CoupledReport::Status::kConverged) return total;
 
     system.evaluateViscosity(law, state, next);
@@ -80,12 +88,14 @@ CoupledReport solveNonNewtonian(CoupledSystem& system, const ViscosityLaw& law, 
     rheology.typical_viscosity = reference * std::exp(next.mean_log);
     if (rheology.residual <= 0.5 * tolerance && inner.tolerance <= linear_goal) return total;
     inner.tolerance = std::max(linear_goal, std::min(kForcing * rheology.residual, kFirstForcing));
+    if (rheology.residual <= 0.5 * tolerance) inner.tolerance = linear_goal;
     if (rheology.iterations == 1 || rheology.residual < least) least = rheology.residual;
     if (rheology.residual > kGrowth * least) {
       anderson.forget();
       least = rheology.residual;
     }
     anderson.advance(next.log_ratio, next.weight, now.log_ratio);
+    extrapolated = true;
     clampField(law, reference, now);
   }
   std::ostringstream text;
