@@ -67,6 +67,7 @@ void HealthDiagnostics::tellSolver(Status& status) {
   status.add("Status", toString(report.status));
   status.add("Step", report.step);
   status.add("Sub-steps", report.substeps);
+  status.add("Retries", report.retries);
   status.add("Iterations", report.iterations);
   status.add("Residual", report.residual);
   status.add("Divergence (1/s)", report.divergence);

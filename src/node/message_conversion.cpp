@@ -80,6 +80,7 @@ monolith_tank::Statistics toStatistics(const StepReport& report, double real_tim
   message.status = toString(report.status);
   message.message = report.message;
   message.substeps = static_cast<std::uint32_t>(report.substeps);
+  message.retries = static_cast<std::uint32_t>(report.retries);
   message.iterations = static_cast<std::uint32_t>(report.iterations);
   message.liquid_solves = static_cast<std::uint32_t>(report.liquid_solves);
   message.friction_iterations = static_cast<std::uint32_t>(report.friction_iterations);

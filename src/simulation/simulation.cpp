@@ -19,6 +19,9 @@ namespace {
 constexpr double kMeshResolution = 0.5;     // of a cell: spacing of the distance grid of meshes
 constexpr double kOverlapTolerance = 0.05;  // of a cell, at the start
 constexpr int kLargestSubsteps = 64;
+// How often in a step a sub-step that fails is tried again, half as long: contacts that do not settle where the bodies
+// are may do so a little further on, and a viscous number that is too large gets smaller.
+constexpr int kMostRetries = 6;
 // Parts of the very first step: the two of first order are short enough not to be seen in what follows.
 constexpr std::array<double, 2> kFirstParts = {0.25, 0.25};
 
@@ -135,6 +138,13 @@ StepReport Simulation::step() {
   {
     const StageClock clock(step.times.total);
     const bool was_predicted = m.predicted;
+    // What is left of a solve is where the bodies were to be.
+    const auto putBack = [&m](bool predicted) {
+      m.sampler.sample(m.state.bodies, m.solids);
+      m.predicted = predicted;
+    };
+    double longest = m.scene.time_step;
+    bool saved = false;
     bool good = true;
     while (good && left > 1e-9 * m.scene.time_step) {
       // As many equal sub-steps as the present speeds ask for; looked at anew after each.
@@ -142,28 +152,34 @@ StepReport Simulation::step() {
       const double wanted = std::ceil(left * speed / (m.scene.solver.cfl * m.grid.h) - 1e-9);
       const double most = std::ceil(kLargestSubsteps * left / m.scene.time_step - 1e-9);
       const double count = std::clamp(wanted, 1.0, most);
-      double dt = left / count;
+      double dt = std::min(left / count, longest);
       if (m.secondOrder() && m.state.substeps < kFirstParts.size()) {
         dt = std::min(dt, kFirstParts[m.state.substeps] * m.scene.time_step);
       }
       // A sub-step that fails leaves the state as it was; those before it have to be taken back. Where there are none,
       // the memory of a copy is given back.
-      if (step.substeps == 0) {
-        if (left - dt > 1e-9 * m.scene.time_step) {
-          m.before = m.state;
-        } else {
-          m.before = SimulationState();
-        }
+      if (!saved) {
+        saved = left - dt > 1e-9 * m.scene.time_step;
+        m.before = saved ? m.state : SimulationState();
       }
-      ++step.substeps;
-      left -= dt;
+      const bool predicted = m.predicted;
       try {
         good = m.substep(dt, step);
+        if (!good && step.status == SolveStatus::kNotConverged && step.retries < kMostRetries) {
+          ++step.retries;
+          step.message.clear();
+          putBack(predicted);
+          longest = 0.5 * dt;
+          good = true;
+          continue;
+        }
       } catch (const std::exception& error) {
         step.status = SolveStatus::kNotConverged;
         step.message = error.what();
         good = false;
       }
+      ++step.substeps;
+      left -= dt;
     }
     if (good) {
       step.status = SolveStatus::kConverged;
@@ -175,10 +191,7 @@ StepReport Simulation::step() {
       if (step.substeps > 1) std::swap(m.state, m.before);
       m.state.mean_liquid = last_liquid;
       m.state.mean_contact = last_contact;
-      // The surface has been extended into the bodies where they are; what is left of the solve is where they were to
-      // be.
-      m.sampler.sample(m.state.bodies, m.solids);
-      m.predicted = was_predicted;
+      putBack(was_predicted);
       // Of the state, which is that of the last step.
       step.liquid_volume = m.report.liquid_volume;
       step.volume_correction = m.report.volume_correction;

@@ -37,6 +37,7 @@ struct StepReport {
   long step = 0;        // output steps since the start
   double time = 0.0;    // s, simulated, after the step
   int substeps = 0;
+  int retries = 0;                 // sub-steps that failed and were taken again, half as long; their work counts, too
   int iterations = 0;              // Krylov, summed over the sub-steps
   int liquid_solves = 0;           // coupled linear solves, summed over the sub-steps
   int friction_iterations = 0;     // staggered projections, summed over the sub-steps

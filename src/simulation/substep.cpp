@@ -50,14 +50,15 @@ BodyPlan Simulation::Impl::planBodies(const StepWeights& w, const std::vector<ch
   return planSecondOrder(state.bodies, scene.gravity, wrenches, past, state.time, w, closing, contacts);
 }
 
-// Geometry of the solve.
+// Geometry of the solve. Of the state nothing changes: the step may fail.
 void Simulation::Impl::prepareSolve(const StepWeights& w) {
+  step_surface = state.surface;
   if (w.order == 1) {
-    if (predicted) prepareGeometry();
-    step_surface = state.surface;
+    if (!predicted) return;
+    sampler.sample(state.bodies, solids);
+    step_surface[0].extendIntoSolids(solids.cell_distance);
     return;
   }
-  step_surface = state.surface;
   sampler.sample(plan.bodies, solids);
   step_surface[0].advect(state.coupled.velocity, w.dt, state.liquid_speed);
   step_surface[0].extendIntoSolids(solids.cell_distance);
@@ -231,6 +232,7 @@ void Simulation::Impl::moveLiquid(const StepWeights& w, StepReport& step) {
     state.surface[0].extendIntoSolids(solids.cell_distance);
     predicted = true;
   } else {
+    std::swap(state.surface, step_surface);  // it was extended into the bodies where they were
     state.surface[0].advect(state.coupled.velocity, w.dt, step.maximum_speed);
     prepareGeometry();
   }

@@ -72,6 +72,7 @@ TEST(MessageConversion, StatisticsCarryEveryStage) {
   report.model.friction = true;
   report.friction_iterations = 6;
   report.rheology_iterations = 9;
+  report.retries = 2;
   report.model.non_newtonian = true;
   const monolith_tank::Statistics message = toStatistics(report, 0.5);
   EXPECT_FALSE(message.committed);
@@ -83,6 +84,7 @@ TEST(MessageConversion, StatisticsCarryEveryStage) {
   EXPECT_TRUE(message.friction);
   EXPECT_EQ(message.friction_iterations, 6u);
   EXPECT_EQ(message.rheology_iterations, 9u);
+  EXPECT_EQ(message.retries, 2u);
   EXPECT_TRUE(message.non_newtonian);
   EXPECT_EQ(message.real_time_factor, 0.5);
 }
