@@ -93,6 +93,19 @@ void setVelocity(const MacGrid& grid, const std::function<Eigen::Vector3d(const 
   }
 }
 
+// Of any rigid motion v + w x (x - centre) exactly: the mean of both ends of each axis, and half of the curl.
+Vector6d rigidMotion(const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& velocity,
+                     const Eigen::Vector3d& centre, double radius) {
+  Vector6d twist = Vector6d::Zero();
+  for (int a = 0; a < 3; ++a) {
+    const Eigen::Vector3d axis = Eigen::Vector3d::Unit(a);
+    const Eigen::Vector3d high = velocity(centre + radius * axis), low = velocity(centre - radius * axis);
+    twist.head<3>() += (high + low) / 6.0;
+    twist.tail<3>() += axis.cross(high - low) / (4.0 * radius);
+  }
+  return twist;
+}
+
 double largestSpeed(const FaceField<double>& velocity) {
   double sum = 0.0;
   for (const auto& field : velocity) {

@@ -17,6 +17,10 @@ MacGrid makeGrid(const TankDescription& tank, const LiquidDescription& liquid);
 void setVelocity(const MacGrid& grid, const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& velocity,
                  FaceField<double>& faces);
 
+// The rigid motion about a point, m/s and rad/s, that is like that of points as far from it as `radius`.
+Vector6d rigidMotion(const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& velocity,
+                     const Eigen::Vector3d& centre, double radius);
+
 // Norm of the largest components of a velocity at faces: no point of the liquid is faster.
 double largestSpeed(const FaceField<double>& velocity);
 

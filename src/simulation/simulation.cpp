@@ -273,9 +273,18 @@ void Simulation::setLiquidVelocity(const std::function<Eigen::Vector3d(const Eig
   FaceField<double> faces;
   setVelocity(impl_->grid, velocity, faces);
   SimulationState& state = impl_->state;
+  std::vector<Vector6d> stuck_twists;
+  for (const RigidBody& body : state.bodies) {
+    // Of a sphere that is its surface.
+    stuck_twists.push_back(rigidMotion(velocity, body.p_WBcm, body.radius() / std::sqrt(3.0)));
+    if (!stuck_twists.back().allFinite()) {
+      throw std::invalid_argument("velocity of the liquid around '" + body.name + "': expected finite numbers");
+    }
+  }
   extrapolateVelocity(impl_->grid.lattice, 0, impl_->noSlip(), state.known, {&faces});  // beyond the walls only
   state.coupled.velocity = std::move(faces);
   state.liquid_speed = largestSpeed(state.coupled.velocity);
+  state.stuck_twists = std::move(stuck_twists);
   state.euler_steps = kStepsAfterSet;
 }
 

@@ -60,7 +60,7 @@ class Simulation {
                     const Eigen::Vector3d& angular_velocity);
 
   // Gives the liquid, wherever it is, this velocity (m/s) of a point in W; of what diverges the next step takes the
-  // divergence. Throws std::invalid_argument unless finite.
+  // divergence. What sticks to a body moves like the points around it. Throws std::invalid_argument unless finite.
   void setLiquidVelocity(const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& velocity);
 
   // Points of the free surface, about one for each cell that it crosses; empty without a free surface.

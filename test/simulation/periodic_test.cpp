@@ -61,6 +61,32 @@ TEST(Periodic, ABodyThatCrossesTheBoundaryFeelsTheSame) {
   }
 }
 
+// A body and the liquid around it that move alike, turning about the body or not, go on as they are: also the liquid
+// that sticks to the body.
+TEST(Periodic, WhatMovesWithTheLiquidGoesOn) {
+  const Vector3d velocity(0.3, 0.2, 0.1), spin(0.0, 0.0, 2.0);
+  for (const bool turns : {false, true}) {
+    Scene scene = periodicScene();
+    scene.liquid.dynamic_viscosity = 1.0;
+    scene.gravity.setZero();
+    scene.time_step = 1e-3;
+    scene.solver.tolerance = 1e-9;
+    const Vector3d centre(0.52, 0.47, 0.5);
+    scene.bodies = {sphereBody("ball", 0.3, 0.5, centre)};
+    Simulation simulation(scene);
+    simulation.setBodyState(0, Eigen::Isometry3d(Eigen::Translation3d(centre)), velocity,
+                            turns ? spin : Vector3d::Zero());
+    simulation.setLiquidVelocity([&](const Vector3d& x) -> Vector3d {
+      return turns && (x - centre).norm() < 0.45 ? velocity + spin.cross(x - centre) : velocity;
+    });
+    ASSERT_TRUE(simulation.step().committed());
+    const BodyState after = simulation.bodyStates()[0];
+    // What turns ends in steps of cells.
+    EXPECT_LT((after.velocity - velocity).norm(), turns ? 0.01 * velocity.norm() : 1e-8);
+    EXPECT_LT((after.angular_velocity - (turns ? spin : Vector3d::Zero())).norm(), turns ? 0.02 * spin.norm() : 1e-8);
+  }
+}
+
 // Along a periodic axis an odd number of cells leaves the pressure no coarser level.
 TEST(Periodic, AnOddNumberOfCellsIsNotMuchSlower) {
   std::map<int, int> iterations;
