@@ -163,11 +163,16 @@ StepReport Simulation::step() {
         m.before = saved ? m.state : SimulationState();
       }
       const bool predicted = m.predicted;
+      const StepReport so_far = step;
       try {
         good = m.substep(dt, step);
         if (!good && step.status == SolveStatus::kNotConverged && step.retries < kMostRetries) {
           ++step.retries;
           step.message.clear();
+          // What it took counts, not what it led to.
+          step.residual = so_far.residual;
+          step.contact_residual = so_far.contact_residual;
+          step.divergence = so_far.divergence;
           putBack(predicted);
           longest = 0.5 * dt;
           good = true;
