@@ -28,7 +28,6 @@ constexpr double kProximity = 1e-4 / kContactCompliance;  // times its complianc
 struct FastSolver::Impl {
   StepProblem* problem = nullptr;
   PackedSystem system;
-  BorderedVector rhs, x;
   double first_change = 0.0;  // of the contacts after the last step's first round, relative; 0 if that was enough
 
   // Response of the twists of the bodies in contact to unit impulses, by one liquid solve each; false if one fails.
@@ -54,7 +53,7 @@ struct FastSolver::Impl {
 
   // Rows of the border behind the right side and the guess, which start from the impulses r.
   void appendBorder(const ContactRows& contacts, const ContactStates& states, const Eigen::VectorXd& compliance,
-                    const Eigen::VectorXd& r, ContactBorder& border) {
+                    const Eigen::VectorXd& r, ContactBorder& border, BorderedVector& rhs, BorderedVector& x) {
     border = makeBorder(contacts, states);
     system.setBorder(border, compliance, kProximity);
     const Eigen::VectorXd start = borderUnknowns(contacts, states, border, r);
@@ -98,10 +97,8 @@ CoupledReport FastSolver::solveWithContacts(StepVector& rhs_fields, const Contac
   CoupledReport report;
   PackedSystem& system = m.system;
   system.updateSchur();
-  m.rhs = system.forces(rhs_fields);
-  m.x = system.motion(x_fields);
-  double rhs_norm =
-      std::hypot(m.rhs.velocity_norm, m.rhs.pressure_norm, bodiesNorm(p, gatherBodies(p, rhs_fields.bodies)));
+  BorderedVector rhs = system.forces(rhs_fields), x = system.motion(x_fields);
+  double rhs_norm = std::hypot(rhs.velocity_norm, rhs.pressure_norm, bodiesNorm(p, gatherBodies(p, rhs_fields.bodies)));
   if (!std::isfinite(rhs_norm)) return m.notConverged(report, "what acts on liquid and bodies is too large a number");
   const Eigen::Index count = contacts.count();
 
@@ -110,7 +107,7 @@ CoupledReport FastSolver::solveWithContacts(StepVector& rhs_fields, const Contac
     guess.setResponse(system.estimatedResponse());
     // One cycle on the whole residual says roughly how the bodies would move without contact.
     system.setBorder(makeBorder(contacts, openStates(contacts)), guess.compliance(), kProximity);
-    guess.startFrom(system.improvedTwists(m.rhs, m.x), report);
+    guess.startFrom(system.improvedTwists(rhs, x), report);
     // What presses the contacts may be all that there is.
     rhs_norm = std::max(rhs_norm, bodiesNorm(p, guess.push()));
   }
@@ -132,20 +129,20 @@ CoupledReport FastSolver::solveWithContacts(StepVector& rhs_fields, const Contac
     }
     const ContactStates states = given ? openStates(contacts) : guess.states();
     ContactBorder border;
-    m.appendBorder(contacts, states, guess.compliance(), r, border);
-    if (given) system.setForces(gatherBodies(p, rhs_fields.bodies) + guess.push(), m.rhs);
+    m.appendBorder(contacts, states, guess.compliance(), r, border, rhs, x);
+    if (given) system.setForces(gatherBodies(p, rhs_fields.bodies) + guess.push(), rhs);
     // Given impulses are judged by the velocities that come of them, which the solve's error must not drown.
     const double closer = given ? std::pow(kTightening, round - kRoundsOnEstimate + 1) : 1.0;
     const bool rough = count > 0 && !given && expected > ContactGuess::settledAt(options.tolerance);
-    last = system.solve(m.rhs, m.x, std::max(closer * options.tolerance, kRoundOff) * rhs_norm,
-                        rough ? kRoughPart : 0.0, options, report, past);
+    last = system.solve(rhs, x, std::max(closer * options.tolerance, kRoundOff) * rhs_norm, rough ? kRoughPart : 0.0,
+                        options, report, past);
     past = KrylovPast::kResidual;
     if (!last.converged) {
       // The first guess of what the contacts do may be far off, and then hard to solve for: begin with none that press.
       if (from_open || border.count() == 0) break;
       from_open = true;
-      m.x = system.motion(x_fields);
-      for (double* field : m.x.fields()) std::fill_n(field, system.lattice().size, 0.0);
+      x = system.motion(x_fields);
+      for (double* field : x.fields()) std::fill_n(field, system.lattice().size, 0.0);
       past = KrylovPast::kNothing;
       guess.setOpen();
       continue;
@@ -154,9 +151,9 @@ CoupledReport FastSolver::solveWithContacts(StepVector& rhs_fields, const Contac
       lawful = true;
       break;
     }
-    const Eigen::VectorXd twists = system.twists(m.x);
+    const Eigen::VectorXd twists = system.twists(x);
     if (!given) {
-      const auto y = Eigen::Map<const Eigen::VectorXd>(m.x.rest.data() + system.bodySize(), border.count());
+      const auto y = Eigen::Map<const Eigen::VectorXd>(x.rest.data() + system.bodySize(), border.count());
       guess.setImpulses(impulses(contacts, states, border, y));
       guess.learnFrom(twists, std::max(options.tolerance, last.residual / rhs_norm));
     }
@@ -179,7 +176,7 @@ CoupledReport FastSolver::solveWithContacts(StepVector& rhs_fields, const Contac
     return m.notConverged(report, text.str());
   }
   system.judgeAge();
-  system.finish(m.x, x_fields);
+  system.finish(x, x_fields);
   report.status = CoupledReport::Status::kConverged;
   return report;
 }

@@ -180,24 +180,24 @@ void PackedSystem::applyBodies(const BodyColumns<Real>& columns, const LiquidFie
   Eigen::Map<Vector>(out, n) = force.template cast<Real>();
 }
 
-void PackedSystem::residual(const BorderedVector& rhs, const BorderedVector& x, std::vector<float>& r) {
+void PackedSystem::residual(const BorderedVector& rhs, const SplitVector& x, std::vector<float>& r) {
   const Lattice& l = lattice();
-  const LiquidFields<double> b = rhs.fields(), from = x.fields();
-  for (double* field : from) fillHalo(l, field);
+  const LiquidFields<double> b = rhs.fields();
+  for (int field = 0; field < 4; ++field) fillHalo(l, x.pieces[field]);
   // What the bodies' motion does is small where it meets what is left of the rest: both in double precision.
-  if (bodySize() > 0) columns_.takeMotion(x.rest.data(), b, before_);
+  if (bodySize() > 0) columns_.takeMotion(x.pieces[4], b, before_);
   const LiquidFields<float> to = packedFields(l, r.data());
-  const Faces<const double> U{from[0], from[1], from[2]};
-  momentumResidual(l, faces_, problem_->coefficients.viscous, {b[0], b[1], b[2]}, U, from[3], {to[0], to[1], to[2]});
+  const Faces<const double> U{x.pieces[0], x.pieces[1], x.pieces[2]};
+  momentumResidual(l, faces_, problem_->coefficients.viscous, {b[0], b[1], b[2]}, U, x.pieces[3],
+                   {to[0], to[1], to[2]});
   divergenceResidual(l, cells_, b[3], U, flux_weight_, to[3]);
   if (bodySize() > 0) columns_.giveBack(before_, b);
   residualOfBodies(rhs, x, r);
 }
 
-void PackedSystem::residualOfBodies(const BorderedVector& rhs, const BorderedVector& x, std::vector<float>& r) const {
-  const LiquidFields<double> from = x.fields();
+void PackedSystem::residualOfBodies(const BorderedVector& rhs, const SplitVector& x, std::vector<float>& r) const {
   std::vector<double> out(rhs.rest.size());
-  applyBodies<double>(columns_, {from[0], from[1], from[2], from[3]}, x.rest.data(), out.data());
+  applyBodies<double>(columns_, {x.pieces[0], x.pieces[1], x.pieces[2], x.pieces[3]}, x.pieces[4], out.data());
   float* to = r.data() + liquidSize();
   for (std::size_t i = 0; i < out.size(); ++i) to[i] = static_cast<float>(rhs.rest[i] - out[i]);
 }
@@ -247,22 +247,22 @@ SplitVector PackedSystem::split(BorderedVector& x) const {
   return {{fields[0], fields[1], fields[2], fields[3], x.rest.data()}, static_cast<std::ptrdiff_t>(lattice().size)};
 }
 
-KrylovMaps PackedSystem::maps(const BorderedVector& rhs, const BorderedVector& x) {
+KrylovMaps PackedSystem::maps(const BorderedVector& rhs) {
   const double rest_norm = Eigen::Map<const Eigen::VectorXd>(rhs.rest.data(), rhs.rest.size()).norm();
   return {liquidSize() + rhs.rest.size(),
           std::hypot(rhs.velocity_norm, flux_weight_ * rhs.pressure_norm, rest_norm),
-          [&](const SplitVector&, auto& r) { residual(rhs, x, r); },
+          [&](const SplitVector& x, auto& r) { residual(rhs, x, r); },
           [this](auto& from, auto& to) { apply(faces_, cells_, columns_, from, to); },
           [this](auto& from, auto& to) { apply(faces_single_, cells_single_, columns_single_, from, to); },
           [this](auto& from, auto& to) { precondition(from, to); },
           liquidSize(),
           liquidParts(),
-          [&](const SplitVector&, auto& r) { residualOfBodies(rhs, x, r); },
+          [&](const SplitVector& x, auto& r) { residualOfBodies(rhs, x, r); },
           [this](const auto& from, auto& to) { preconditionBodies(from, to); }};
 }
 
 Eigen::VectorXd PackedSystem::improvedTwists(const BorderedVector& rhs, BorderedVector& x) {
-  const std::vector<float>& z = krylov_.firstDirection(maps(rhs, x), split(x));
+  const std::vector<float>& z = krylov_.firstDirection(maps(rhs), split(x));
   const Eigen::VectorXf change = Eigen::Map<const Eigen::VectorXf>(z.data() + liquidSize(), bodySize());
   return twists(x) + change.cast<double>().cwiseQuotient(scale_);
 }
@@ -275,7 +275,7 @@ KrylovReport PackedSystem::solve(const BorderedVector& rhs, BorderedVector& x, d
   k.maximum_iterations = options.maximum_iterations;
   // Where viscosities differ by orders of magnitude every direction counts.
   if (!problem_->cell_viscosity.empty()) k.shortest_cycle = k.longest_cycle;
-  const KrylovReport done = krylov_.solve(maps(rhs, x), split(x), k, past);
+  const KrylovReport done = krylov_.solve(maps(rhs), split(x), k, past);
   report.iterations += done.iterations;
   ++report.solves;
   if (iterations_ == 0 && done.iterations > 0 && done.residual > 0.0) {

@@ -81,14 +81,14 @@ class PackedSystem {
   template <class Real>
   void applyBodies(const BodyColumns<Real>& columns, const LiquidFields<const Real>& fields, const Real* rest,
                    Real* out) const;
-  // r = b - A x
-  void residual(const BorderedVector& rhs, const BorderedVector& x, std::vector<float>& r);
-  void residualOfBodies(const BorderedVector& rhs, const BorderedVector& x, std::vector<float>& r) const;
+  // r = b - A x of a solution that is split()
+  void residual(const BorderedVector& rhs, const SplitVector& x, std::vector<float>& r);
+  void residualOfBodies(const BorderedVector& rhs, const SplitVector& x, std::vector<float>& r) const;
   void precondition(const std::vector<float>& from, std::vector<float>& to);
   // Its second half, for which `to` holds the liquid's.
   void preconditionBodies(const std::vector<float>& from, std::vector<float>& to) const;
   Parts liquidParts() const;
-  KrylovMaps maps(const BorderedVector& rhs, const BorderedVector& x);
+  KrylovMaps maps(const BorderedVector& rhs);
   SplitVector split(BorderedVector& x) const;
 
   StepProblem* problem_ = nullptr;

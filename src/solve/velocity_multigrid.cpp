@@ -7,6 +7,7 @@ namespace monolith {
 namespace {
 
 constexpr int kCoarsestDegree = 12;
+static_assert(kCoarsestDegree % 2 == 0, "see cycleFrom()");
 constexpr float kRatio = 6.0f;
 constexpr float kCoarsestRatio = 60.0f;  // the coarsest level is to be solved, not smoothed
 
@@ -84,11 +85,9 @@ void VelocityMultigrid::descend(std::size_t index) {
 void VelocityMultigrid::cycleFrom(std::size_t index, const Faces<const float>& b, const Faces<float>& x) {
   Level& level = levels_[index];
   level.right = b;
-  // Every smoothing step but the first takes a turn.
-  const int steps = index + 1 < levels_.size() ? 2 * degree_ : index == 0 ? 2 * degree_ : kCoarsestDegree;
-  const bool odd = (steps - 1) % 2 != 0;
-  level.x = odd ? view(level.own_next) : x;
-  level.next = odd ? x : view(level.own_next);
+  // An even number of smoothing steps, all but the first of which take a turn: the last ends in x.
+  level.x = view(level.own_next);
+  level.next = x;
   descend(index);
 }
 

@@ -79,8 +79,8 @@ TEST(NonNewtonian, BinghamLiquidFlowsAsAPlugOrNotAtAll) {
   EXPECT_LT(channelMean(bingham(60.0), 16), 3.0 * creep);
 }
 
-// The iteration may lead to viscosities that are too hard to solve for, and does so for every fourth of such liquids: then
-// it goes on from better ones.
+// The iteration may lead to viscosities that are too hard to solve for, and has done so for these: then it goes on from
+// better ones.
 TEST(NonNewtonian, ABinghamLiquidSettlesWhateverItsConsistency) {
   const double phi = 20.0 / 50.0;
   for (const double consistency : {2.001, 2.009, 2.011, 2.012}) {

@@ -270,13 +270,13 @@ TEST_F(FgmresTest, CyclesShareAReductionEqually) {
       (Eigen::MatrixXd::Identity(n, n) + 0.02 * Eigen::MatrixXd::NullaryExpr(n, n, [&] { return gauss(random); }));
   std::vector<int> directions;  // of each cycle
   KrylovMaps counting = maps(&nearly);
-  counting.residual = [&, whole = counting.residual](auto& x, auto& r) {
+  counting.residual = [&, plain = counting.residual](auto& x, auto& r) {
     directions.push_back(0);
-    whole(x, r);
+    plain(x, r);
   };
-  counting.precondition = [&, whole = counting.precondition](auto& x, auto& y) {
+  counting.precondition = [&, plain = counting.precondition](auto& x, auto& y) {
     ++directions.back();
-    whole(x, y);
+    plain(x, y);
   };
   std::vector<double> x(rhs.size(), 0.0);
   KrylovOptions options;
