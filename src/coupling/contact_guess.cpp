@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solve/staggered_projections.h"
+#include "solve/frictional_contact.h"
 
 namespace monolith {
 namespace {
@@ -48,7 +48,7 @@ void ContactGuess::setOpen() {
 
 void ContactGuess::startFrom(const Eigen::VectorXd& twists, CoupledReport& report) {
   const Eigen::VectorXd w0 = velocities(twists);
-  const FrictionReport friction = solveFrictionalContact(D_, w0, rows_.friction, closeness(true), r_);
+  const FrictionReport friction = solveFrictionalContact({D_, w0, rows_.friction}, closeness(true), r_);
   report.friction_iterations += friction.iterations;
   states_ = contactStates(rows_, D_, D_ * r_ + w0, r_);
 }
@@ -85,7 +85,7 @@ ContactGuess::Change ContactGuess::proceedFrom(const Eigen::VectorXd& twists, bo
   // Shifted so that the small system reproduces this solution exactly.
   const Eigen::VectorXd w0 = w - D_ * r_ + compliance_.cwiseProduct(r_);
   Eigen::VectorXd next = r_;
-  const FrictionReport friction = solveFrictionalContact(D_, w0, rows_.friction, closeness(rough), next);
+  const FrictionReport friction = solveFrictionalContact({D_, w0, rows_.friction}, closeness(rough), next);
   report.friction_iterations += friction.iterations;
   report.contact_residual = friction.residual;
   const double change = (D_ * (next - r_)).cwiseAbs().maxCoeff();

@@ -10,8 +10,9 @@ namespace {
 // that is longer: the speed that it takes stays.
 constexpr double kRecovery = 0.5;
 constexpr double kRecoveryTime = 0.02;
-// Contacts of two steps are the same one if they are closer than this.
-constexpr double kSamePlace = 0.5;  // cell widths
+// Contacts of two steps are the same one if they are closer than this and push in about the same direction.
+constexpr double kSamePlace = 0.5;   // cell widths
+constexpr double kSameNormal = 0.9;  // cosine
 
 // Two directions normal to n, the same for the same n.
 Eigen::Matrix<double, 3, 2> tangentBasis(const Eigen::Vector3d& n) {
@@ -71,45 +72,51 @@ ContactRows buildContactRows(const StepProblem& problem, const std::vector<Conta
 }
 
 Eigen::VectorXd warmStart(const StepProblem& problem, const ContactRows& rows, const std::vector<Contact>& contacts,
-                          const std::vector<ContactImpulse>& last) {
+                          const std::vector<ContactForce>& last) {
   const Eigen::Index m = rows.count();
   Eigen::VectorXd r = Eigen::VectorXd::Zero(3 * m);
+  const double impulse = problem.dt / problem.impulse_scale;
+  std::vector<char> taken(last.size(), 0);  // no force counts twice
   for (Eigen::Index c = 0; c < m; ++c) {
-    const ContactImpulse* nearest = nullptr;
+    std::size_t at = last.size();
     double least = kSamePlace * problem.grid.h;
-    for (const ContactImpulse& old : last) {
-      if (old.contact.body_a != contacts[c].body_a || old.contact.body_b != contacts[c].body_b) continue;
-      const double distance = (old.contact.point - contacts[c].point).norm();
+    for (std::size_t i = 0; i < last.size(); ++i) {
+      const Contact& old = last[i].contact;
+      if (taken[i] || old.body_a != contacts[c].body_a || old.body_b != contacts[c].body_b) continue;
+      // In a corner one point touches several faces.
+      if (old.normal.dot(contacts[c].normal) < kSameNormal) continue;
+      const double distance = (old.point - contacts[c].point).norm();
       if (distance < least) {
         least = distance;
-        nearest = &old;
+        at = i;
       }
     }
-    if (nearest == nullptr) continue;
-    r[c] = nearest->normal / problem.impulse_scale;
-    r.segment<2>(m + 2 * c) = rows.tangents[c].transpose() * nearest->friction / problem.impulse_scale;
+    if (at == last.size()) continue;
+    taken[at] = 1;
+    r[c] = impulse * last[at].normal;
+    r.segment<2>(m + 2 * c) = impulse * rows.tangents[c].transpose() * last[at].friction;
   }
   return r;
 }
 
 void distributeImpulses(const StepProblem& problem, const ContactRows& rows, const std::vector<Contact>& contacts,
-                        const Eigen::VectorXd& r, std::vector<ContactImpulse>& impulses,
-                        std::vector<Wrench>& wrenches) {
+                        const Eigen::VectorXd& r, std::vector<ContactForce>& forces, std::vector<Wrench>& wrenches) {
   const Eigen::Index m = rows.count();
-  impulses.clear();
+  const double newton = problem.impulse_scale / problem.dt;
+  forces.clear();
   wrenches.assign(problem.bodies->size(), Wrench());
   for (Eigen::Index c = 0; c < m; ++c) {
-    ContactImpulse impulse;
-    impulse.contact = contacts[c];
-    impulse.normal = problem.impulse_scale * std::max(r[c], 0.0);
-    impulse.friction = problem.impulse_scale * rows.tangents[c] * r.segment<2>(m + 2 * c);
-    const Eigen::Vector3d force = (impulse.normal * contacts[c].normal + impulse.friction) / problem.dt;
+    ContactForce at;
+    at.contact = contacts[c];
+    at.normal = newton * std::max(r[c], 0.0);
+    at.friction = newton * rows.tangents[c] * r.segment<2>(m + 2 * c);
+    const Eigen::Vector3d force = at.normal * contacts[c].normal + at.friction;
     for (const auto& [body, sign] : {std::pair(contacts[c].body_a, 1.0), std::pair(contacts[c].body_b, -1.0)}) {
       if (body == Contact::kWall) continue;
       wrenches[body].force += sign * force;
       wrenches[body].torque += sign * (contacts[c].point - (*problem.bodies)[body].p_WBcm).cross(force);
     }
-    impulses.push_back(impulse);
+    forces.push_back(at);
   }
 }
 

@@ -17,11 +17,11 @@ struct ContactLaw {
   double restitution = 0.0;  // speed of separation over speed of approach, of impacts
 };
 
-// What a contact did in the last step; contacts of the next one start from it.
-struct ContactImpulse {
+// What a contact did in the last step, mean over it; contacts of the next one start from it.
+struct ContactForce {
   Contact contact;
-  double normal = 0.0;                                     // N s
-  Eigen::Vector3d friction = Eigen::Vector3d::Zero();      // N s, on body_a, in W
+  double normal = 0.0;                                 // N
+  Eigen::Vector3d friction = Eigen::Vector3d::Zero();  // N, on body_a, in W
 };
 
 struct ContactRows {
@@ -40,12 +40,12 @@ ContactRows buildContactRows(const StepProblem& problem, const std::vector<Conta
                              const std::vector<ContactLaw>& laws, const std::vector<Vector6d>& twists,
                              double resting_speed);
 
-// r from the impulses of the last step: those of the same bodies at about the same place.
+// r from the forces of the last step: those of the same bodies at about the same place in about the same direction.
 Eigen::VectorXd warmStart(const StepProblem& problem, const ContactRows& rows, const std::vector<Contact>& contacts,
-                          const std::vector<ContactImpulse>& last);
+                          const std::vector<ContactForce>& last);
 
-// The impulses r with their contacts, and the wrenches (mean over the step) that they exert.
+// The forces of the impulses r, with their contacts, and the wrenches that they exert; means over the step.
 void distributeImpulses(const StepProblem& problem, const ContactRows& rows, const std::vector<Contact>& contacts,
-                        const Eigen::VectorXd& r, std::vector<ContactImpulse>& impulses, std::vector<Wrench>& wrenches);
+                        const Eigen::VectorXd& r, std::vector<ContactForce>& forces, std::vector<Wrench>& wrenches);
 
 }  // namespace monolith

@@ -177,7 +177,7 @@ CoupledReport CoupledSystem::Impl::solve(const std::vector<Vector6d>& free_twist
 
   const ContactRows rows =
       buildContactRows(p, contacts, laws, free_twists, kRestingSteps * gravity.norm() * p.dt);
-  Eigen::VectorXd r = warmStart(p, rows, contacts, state.impulses);
+  Eigen::VectorXd r = warmStart(p, rows, contacts, state.contact_forces);
   CoupledReport report = contacts.empty()                       ? solver->solve(rhs, options, x)
                          : coupling == CouplingName::kIterative ? solveIteratively(*solver, p, rhs, rows, options, x, r)
                                                                 : solver->solveWithContacts(rhs, rows, options, x, r);
@@ -188,7 +188,7 @@ CoupledReport CoupledSystem::Impl::solve(const std::vector<Vector6d>& free_twist
   }
   giveBack(state);
   if (!converged) return report;
-  distributeImpulses(p, rows, contacts, r, state.impulses, state.contact);
+  distributeImpulses(p, rows, contacts, r, state.contact_forces, state.contact);
   return report;
 }
 

@@ -18,7 +18,7 @@ struct CoupledState {
   std::vector<Vector6d> twists;  // of all bodies
   std::vector<Wrench> liquid;    // mean over the step, on each body
   std::vector<Wrench> contact;
-  std::vector<ContactImpulse> impulses;
+  std::vector<ContactForce> contact_forces;
 };
 
 class CoupledSystem {

@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "coupling/stress_system.h"
-#include "solve/staggered_projections.h"
+#include "solve/frictional_contact.h"
 
 namespace monolith {
 namespace {
@@ -154,7 +154,7 @@ CoupledReport DirectSolver::solveWithContacts(StepVector& rhs, const ContactRows
   Eigen::VectorXd compliance;
   const Eigen::MatrixXd D = contactResponse(contacts, impl_->K, compliance);
   const Eigen::VectorXd w = contacts.J * gatherBodies(p, x.bodies) + contacts.bias;
-  const FrictionReport friction = solveFrictionalContact(D, w, contacts.friction, kSmallTolerance, r);
+  const FrictionReport friction = solveFrictionalContact({D, w, contacts.friction}, kSmallTolerance, r);
   StepVector pushed = rhs;
   scatterBodies(p, gatherBodies(p, rhs.bodies) + contacts.J.transpose() * r, pushed.bodies);
   CoupledReport second = impl_->solve(pushed, options.tolerance, x);

@@ -6,7 +6,7 @@
 //
 // Contacts that press are rows of the same system: the normal velocity of each, the tangential velocity of those that
 // stick; a contact that slips pushes along (n + mu d) lambda with a direction d opposite to its slip, and across d as
-// the slip turns: Coulomb's law linearised. What each contact does is found by staggered projections on J S^-1 J^T
+// the slip turns: Coulomb's law linearised. What each contact does is found (solve/frictional_contact.h) on J S^-1 J^T
 // (contact_guess.h) and verified on the full solution, until the law holds there: Newton's method, which needs one
 // solve with the liquid where contacts go on as they did, else two or three. Those that are not the last are rough.
 

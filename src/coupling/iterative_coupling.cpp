@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "solve/anderson.h"
-#include "solve/staggered_projections.h"
+#include "solve/frictional_contact.h"
 
 namespace monolith {
 namespace {
@@ -60,7 +60,7 @@ CoupledReport solveIteratively(StepSolver& solver, const StepProblem& problem, c
     // Contact alone: what the bodies would do under the liquid's forces just found.
     const Eigen::VectorXd v = gatherBodies(problem, x.bodies);
     const Eigen::VectorXd w = contacts.J * (v - K * push) + contacts.bias;
-    const FrictionReport friction = solveFrictionalContact(D, w, contacts.friction, small_tolerance, r);
+    const FrictionReport friction = solveFrictionalContact({D, w, contacts.friction}, small_tolerance, r);
     report.friction_iterations += 1;
     report.contact_residual = friction.residual;
     const Eigen::VectorXd next = contacts.J.transpose() * r;

@@ -7,9 +7,9 @@
 
 #include "coupling/stress_system.h"
 #include "solve/disc_qp.h"
+#include "solve/frictional_contact.h"
 #include "solve/lcp.h"
 #include "solve/mprgp.h"
-#include "solve/staggered_projections.h"
 
 namespace monolith {
 namespace {
@@ -220,7 +220,7 @@ CoupledReport ReferenceSolver::Impl::minimiseLaw(const StepVector& rhs, const Ei
   Eigen::VectorXd compliance;
   const Eigen::MatrixXd D = contactResponse(contacts, response, compliance);
   const auto small = [&](const Eigen::VectorXd& w, Eigen::VectorXd& next) {
-    return solveFrictionalContact(D, w - D * next, contacts.friction, kLawTolerance, next).solved;
+    return solveFrictionalContact({D, w - D * next, contacts.friction}, kLawTolerance, next).solved;
   };
   return settle(rhs, body_forces, contacts.J, contacts.bias, compliance, small, options, unknowns, r, x);
 }

@@ -22,7 +22,7 @@ struct CoupledReport {
   std::string message;
   int iterations = 0;             // of the linear solver; `direct`: none
   int solves = 0;                 // with the whole liquid
-  int friction_iterations = 0;    // staggered projections, or rounds between pressure and contact
+  int friction_iterations = 0;    // of Coulomb's law on the small system, or rounds between pressure and contact
   double residual = 0.0;          // relative, recomputed
   double contact_residual = 0.0;  // of Coulomb's law, relative to the speeds that contacts change
   double divergence = 0.0;        // 1/s, largest over cells with pressure

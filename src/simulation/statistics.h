@@ -40,7 +40,7 @@ struct StepReport {
   int retries = 0;                 // sub-steps that failed and were taken again, half as long; their work counts, too
   int iterations = 0;              // Krylov, summed over the sub-steps
   int liquid_solves = 0;           // coupled linear solves, summed over the sub-steps
-  int friction_iterations = 0;     // staggered projections, summed over the sub-steps
+  int friction_iterations = 0;     // of Coulomb's law on the small system, summed over the sub-steps
   int rheology_iterations = 0;     // of the viscosity, summed over the sub-steps; Newtonian: none
   double residual = 0.0;           // relative, worst of the sub-steps
   double contact_residual = 0.0;   // of Coulomb's law, relative, worst of the sub-steps

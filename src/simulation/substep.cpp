@@ -101,7 +101,7 @@ void Simulation::Impl::guess(const StepWeights& w, const FaceField<double>& free
   copyField(state.coupled.pressure, start.pressure);
   start.liquid = state.coupled.liquid;
   start.contact = state.coupled.contact;
-  start.impulses = state.coupled.impulses;
+  start.contact_forces = state.coupled.contact_forces;
   start.twists.resize(state.bodies.size());
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
     start.twists[b] = state.bodies[b].twist;

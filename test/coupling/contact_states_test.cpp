@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "coupling/step_solver.h"
-#include "solve/staggered_projections.h"
+#include "solve/frictional_contact.h"
 
 namespace monolith {
 namespace {
@@ -36,7 +36,7 @@ struct Small {
     w0 = rows.bias;
   }
 
-  double residual(const Eigen::VectorXd& r) const { return coulombResidual(D, w0, rows.friction, r); }
+  double residual(const Eigen::VectorXd& r) const { return coulombResidual({D, w0, rows.friction}, r); }
 
   // Impulses that the bordered system gives for what the contacts do at r.
   Eigen::VectorXd step(const Eigen::VectorXd& r) const {
@@ -53,7 +53,7 @@ TEST(ContactStates, BorderIsNewtonsMethodForCoulombsLaw) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     const Small small(seed);
     Eigen::VectorXd r;
-    ASSERT_TRUE(solveFrictionalContact(small.D, small.w0, small.rows.friction, 1e-12, r).solved);
+    ASSERT_TRUE(solveFrictionalContact({small.D, small.w0, small.rows.friction}, 1e-12, r).solved);
     const ContactStates states = contactStates(small.rows, small.D, small.D * r + small.w0, r);
     slipping += static_cast<int>(std::count(states.state.begin(), states.state.end(), ContactState::kSlip));
     EXPECT_LT(small.residual(small.step(r)), 1e-7) << "does not stay at the answer, seed " << seed;

@@ -2,7 +2,10 @@
 
 #include <random>
 
+#include "solve/cone_interior_point.h"
+#include "solve/contact_sweeps.h"
 #include "solve/disc_qp.h"
+#include "solve/frictional_contact.h"
 #include "solve/staggered_projections.h"
 
 namespace monolith {
@@ -77,28 +80,33 @@ void expectLaw(const Eigen::MatrixXd& D, const Eigen::VectorXd& w0, const Eigen:
     EXPECT_LT(std::min(r[c] / std::max(r.cwiseAbs().maxCoeff(), 1e-300), w[c] / scale), tolerance);
     const Eigen::Vector2d f = r.segment<2>(m + 2 * c), slip = w.segment<2>(m + 2 * c);
     EXPECT_LE(f.norm(), mu[c] * r[c] * (1.0 + 1e-9));
-    if (slip.norm() > 1e3 * tolerance * scale && r[c] > 1e-4 * r.cwiseAbs().maxCoeff()) {
+    if (mu[c] > 0.0 && slip.norm() > 1e3 * tolerance * scale && r[c] > 1e-4 * r.cwiseAbs().maxCoeff()) {
       EXPECT_LT((f / (mu[c] * r[c]) + slip.normalized()).norm(), 1e-3);
     }
   }
 }
 
-TEST(StaggeredProjections, BlockOnAPlane) {
+TEST(FrictionalContact, BlockOnAPlane) {
   // A point of mass 2 pushed down and sideways: D = 1/2.
   const Eigen::MatrixXd D = 0.5 * Eigen::MatrixXd::Identity(3, 3);
-  for (const double mu : {0.0, 0.2, 0.5}) {
+  const Eigen::VectorXd w0 = Eigen::Vector3d(-1.0, 0.3, 0.0);
+  for (const double friction : {0.0, 0.2, 0.5}) {
+    const Eigen::VectorXd mu = Eigen::VectorXd::Constant(1, friction);
+    const FrictionProblem problem{D, w0, mu};
+    const Eigen::Vector3d expected(2.0, -std::min(2.0 * friction, 0.6), 0.0);
     Eigen::VectorXd r;
-    const Eigen::Vector3d w0(-1.0, 0.3, 0.0);
-    ASSERT_TRUE(solveFrictionalContact(D, w0, Eigen::VectorXd::Constant(1, mu), 1e-12, r).solved);
-    EXPECT_NEAR(r[0], 2.0, 1e-10);
-    EXPECT_NEAR(r[1], -std::min(2.0 * mu, 0.6), 1e-10);
-    EXPECT_NEAR(r[2], 0.0, 1e-10);
+    ASSERT_TRUE(solveFrictionalContact(problem, 1e-12, r).solved);
+    EXPECT_LT((r - expected).norm(), 1e-10);
+    ClosestToLaw closest(problem, 1e-9);
+    findInteriorPoint(problem, closest);
+    ASSERT_TRUE(closest.arrived()) << friction;
+    EXPECT_LT((closest.impulses() - expected).norm(), 1e-7) << friction;
   }
 }
 
-TEST(StaggeredProjections, RandomContactsObeyCoulombsLaw) {
+TEST(FrictionalContact, RandomContactsObeyCoulombsLaw) {
   std::mt19937 random(3);
-  int solved = 0, staggered = 0;
+  int solved = 0, staggered = 0, interior = 0;
   for (int trial = 0; trial < 60; ++trial) {
     const Eigen::Index m = 1 + trial % 8;
     // Fewer degrees of freedom than rows: redundant contacts.
@@ -107,34 +115,111 @@ TEST(StaggeredProjections, RandomContactsObeyCoulombsLaw) {
     Eigen::VectorXd mu = 0.4 * randomVector(random, m).cwiseAbs();
     const Eigen::VectorXd feasible = randomVector(random, 3 * m).cwiseAbs();
     Eigen::VectorXd w0 = -D * feasible;  // a configuration that some impulses can bring to rest
-    Eigen::VectorXd r;
-    const FrictionReport report = solveFrictionalContact(D, w0, mu, 1e-9, r);
-    if (!report.solved) continue;
-    ++solved;
-    staggered += report.staggered;
+    const FrictionProblem problem{D, w0, mu};
     SCOPED_TRACE(trial);
-    expectLaw(D, w0, mu, r, 1e-6);
+    Eigen::VectorXd r;
+    if (solveFrictionalContact(problem, 1e-9, r).solved) {
+      ++solved;
+      expectLaw(D, w0, mu, r, 1e-6);
+    }
+    const double goal = 1e-7 * w0.cwiseAbs().maxCoeff();
+    ClosestToLaw by_turns(problem, goal), inside(problem, goal);
+    alternateProjections(problem, Eigen::VectorXd::Zero(3 * m), by_turns);
+    staggered += by_turns.arrived();
+    findInteriorPoint(problem, inside);
+    interior += inside.arrived();
+    if (inside.arrived()) expectLaw(D, w0, mu, inside.impulses(), 1e-5);
   }
   // Random couplings of normals and tangents are harsher than bodies' own.
   EXPECT_GE(solved, 54);
   EXPECT_GE(staggered, 45);
+  EXPECT_GE(interior, 45);
 }
 
-// Normal and tangent coupled so strongly, with so much friction, that alternation cycles and Newton's method leads nowhere
-// from its iterates: contact by contact the law is met, by slip in directions that only the search over all finds.
+// A heap: each of `bodies` lies with five points on those below it or on the floor, at rest but for gravity.
+struct Heap {
+  Eigen::MatrixXd D;
+  Eigen::VectorXd w0, mu;
+
+  Heap(unsigned seed, Eigen::Index bodies, double friction) {
+    std::mt19937 random(seed);
+    constexpr Eigen::Index kPoints = 5;
+    const Eigen::Index m = kPoints * bodies;
+    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(3 * m, 6 * bodies);
+    Eigen::MatrixXd K = Eigen::MatrixXd::Zero(6 * bodies, 6 * bodies);
+    Eigen::VectorXd v = Eigen::VectorXd::Zero(6 * bodies);
+    for (Eigen::Index b = 0; b < bodies; ++b) {
+      const double mass = std::pow(10.0, 0.5 * randomVector(random, 1)[0]);
+      K.diagonal().segment<3>(6 * b).setConstant(1.0 / mass);
+      K.diagonal().segment<3>(6 * b + 3).setConstant(600.0 / mass);
+      v[6 * b + 2] = -0.1;
+      for (Eigen::Index i = 0; i < kPoints; ++i) {
+        const Eigen::Index c = kPoints * b + i;
+        const Eigen::Vector3d n = (Eigen::Vector3d(0.0, 0.0, 2.0) + randomVector(random, 3)).normalized();
+        const Eigen::Vector3d t = n.unitOrthogonal();
+        const Eigen::Vector3d axes[3] = {n, t, n.cross(t)};
+        const Eigen::Index row[3] = {c, m + 2 * c, m + 2 * c + 1};
+        const Eigen::Index below = b - 1 - static_cast<Eigen::Index>(random() % 2);
+        for (const auto& [body, sign] : {std::pair(b, 1.0), std::pair(below, -1.0)}) {
+          if (body < 0) continue;
+          const Eigen::Vector3d arm = 0.05 * (randomVector(random, 3) - sign * Eigen::Vector3d::UnitZ());
+          for (int d = 0; d < 3; ++d) {
+            J.block<1, 3>(row[d], 6 * body) = sign * axes[d].transpose();
+            J.block<1, 3>(row[d], 6 * body + 3) = sign * arm.cross(axes[d]).transpose();
+          }
+        }
+      }
+    }
+    D = J * K * J.transpose();
+    D.diagonal().array() += 1e-10 * D.diagonal().mean();
+    w0 = J * v;
+    mu = Eigen::VectorXd::Constant(m, friction);
+  }
+};
+
+TEST(FrictionalContact, HeapsOfFortyContactsObeyCoulombsLaw) {
+  int alternated = 0;
+  for (const double friction : {0.0, 0.2, 0.4}) {
+    for (unsigned seed = 0; seed < 10; ++seed) {
+      const Heap heap(seed, 8, friction);
+      const FrictionProblem problem{heap.D, heap.w0, heap.mu};
+      SCOPED_TRACE(testing::Message() << "friction " << friction << ", seed " << seed);
+      Eigen::VectorXd r;
+      const FrictionReport report = solveFrictionalContact(problem, 1e-6, r);
+      EXPECT_LT(report.residual, 1e-5);
+      // Each is a factorisation or so; sweeps would be a thousand.
+      EXPECT_LT(report.iterations, 200);
+      expectLaw(heap.D, heap.w0, heap.mu, r, 1e-4);
+      ClosestToLaw by_turns(problem, 1e-6 * heap.w0.cwiseAbs().maxCoeff());
+      alternateProjections(problem, Eigen::VectorXd::Zero(3 * problem.count()), by_turns);
+      alternated += by_turns.arrived();
+      // What comes out is where the next step begins.
+      Eigen::VectorXd again = r;
+      if (report.solved) EXPECT_EQ(solveFrictionalContact(problem, 1e-6, again).iterations, 0);
+    }
+  }
+  // Without friction it is one linear complementarity problem.
+  EXPECT_GE(alternated, 10);
+  EXPECT_LT(alternated, 25);
+}
+
+// Normal and tangent coupled strongly, with so much friction that alternation may cycle: contact by contact the law is
+// met, by slip in directions that only the search over all finds.
 void expectSwept(const Eigen::MatrixXd& D, const Eigen::VectorXd& w0, const Eigen::VectorXd& mu) {
-  Eigen::VectorXd r;
-  const FrictionReport report = solveFrictionalContact(D, w0, mu, 1e-10, r);
-  ASSERT_TRUE(report.solved) << report.residual;
-  EXPECT_FALSE(report.staggered);
-  EXPECT_GT(report.iterations, 200);  // after all the alternations there are
-  EXPECT_LE(coulombResidual(D, w0, mu, r), 1e-10 * w0.cwiseAbs().maxCoeff());
+  const FrictionProblem problem{D, w0, mu};
+  const double goal = 1e-10 * w0.cwiseAbs().maxCoeff();
+  ClosestToLaw swept(problem, goal);
+  sweepContacts(problem, Eigen::VectorXd::Zero(w0.size()), swept);
+  ASSERT_TRUE(swept.arrived()) << swept.residual();
+  const Eigen::VectorXd& r = swept.impulses();
   expectLaw(D, w0, mu, r, 1e-8);
   const Eigen::VectorXd w = D * r + w0;
   for (Eigen::Index c = 0; c < mu.size(); ++c) EXPECT_GT(w.segment<2>(mu.size() + 2 * c).norm(), 1e-2) << c;
+  Eigen::VectorXd whole;
+  EXPECT_TRUE(solveFrictionalContact(problem, 1e-10, whole).acceptable());
 }
 
-TEST(StaggeredProjections, SweepsTakeOverWhereAlternationCycles) {
+TEST(ContactSweeps, FindTheSlip) {
   Eigen::Matrix3d D;
   D << 3.5, 2.5, 1.0, 2.5, 2.75, 2.5, 1.0, 2.5, 4.5;
   expectSwept(D, Eigen::Vector3d(-2.0, -1.0, 1.5), Eigen::VectorXd::Constant(1, 4.0));
@@ -142,7 +227,7 @@ TEST(StaggeredProjections, SweepsTakeOverWhereAlternationCycles) {
   expectSwept(D, Eigen::Vector3d(-0.5, -1.0, 1.0), Eigen::VectorXd::Constant(1, 2.5));
 }
 
-TEST(StaggeredProjections, SweepsCarryFromContactToContact) {
+TEST(ContactSweeps, CarryFromContactToContact) {
   Eigen::Matrix<double, 6, 6> D;
   D << 9.75, 1.5, 5.0, 1.5, 2.0, 2.25,    //
       1.5, 5.5, -3.0, 1.75, -6.0, 0.5,    //

@@ -1,0 +1,12 @@
+#pragma once
+// Newton's method on Coulomb's law, r = P(r - w/D_cc) (Alart & Curnier 1991, Comput. Methods Appl. Mech. Eng. 92, 353):
+// undamped, it only polishes what is nearly right. Where the law has more than one answer, it stays with the nearest.
+
+#include "solve/coulomb_law.h"
+
+namespace monolith {
+
+// From r; its iterates are offered. Returns the number of steps.
+int polishByNewton(const FrictionProblem& problem, const Eigen::VectorXd& r, ClosestToLaw& closest);
+
+}  // namespace monolith
