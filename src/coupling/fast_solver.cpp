@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "coupling/contact_guess.h"
@@ -17,6 +18,10 @@ constexpr double kRoughPart = 0.03;
 constexpr int kRoundsOnEstimate = 10;
 constexpr double kResponseTolerance = 1e-6;
 constexpr double kTightening = 0.3;  // of the tolerance in each of those rounds
+// In others the contacts may come no closer to settling by this part: what they see then is the solve's error, which
+// is to be smaller, as much as they are too far.
+constexpr double kNoCloser = 0.5;
+constexpr double kMostTightening = 0.03;
 constexpr double kRoundOff = 1e-13;
 // Impulses of contacts that press are solved for next to those of the small system: moving away from them costs this
 // part of the contact's response. Without it what redundant contacts do one by one is as sensitive as
@@ -48,6 +53,7 @@ struct FastSolver::Impl {
       K.col(i) = system.twists(answer);
     }
     K = 0.5 * (K + K.transpose()).eval();
+    system.adoptResponse(K);
     return true;
   }
 
@@ -115,6 +121,8 @@ CoupledReport FastSolver::solveWithContacts(StepVector& rhs_fields, const Contac
   bool lawful = false;
   bool from_open = count == 0;
   double expected = m.first_change;  // change of the contacts that this round will ask for, relative
+  double asked = std::numeric_limits<double>::infinity();  // by the round before
+  double closer = 1.0;
   KrylovReport last;
   KrylovPast past = count > 0 ? KrylovPast::kDirection : KrylovPast::kNothing;
   for (int round = 0; round < options.maximum_rounds && !lawful; ++round) {
@@ -132,7 +140,7 @@ CoupledReport FastSolver::solveWithContacts(StepVector& rhs_fields, const Contac
     m.appendBorder(contacts, states, guess.compliance(), r, border, rhs, x);
     if (given) system.setForces(gatherBodies(p, rhs_fields.bodies) + guess.push(), rhs);
     // Given impulses are judged by the velocities that come of them, which the solve's error must not drown.
-    const double closer = given ? std::pow(kTightening, round - kRoundsOnEstimate + 1) : 1.0;
+    if (given) closer = std::pow(kTightening, round - kRoundsOnEstimate + 1);
     const bool rough = count > 0 && !given && expected > ContactGuess::settledAt(options.tolerance);
     last = system.solve(rhs, x, std::max(closer * options.tolerance, kRoundOff) * rhs_norm, rough ? kRoughPart : 0.0,
                         options, report, past);
@@ -162,6 +170,12 @@ CoupledReport FastSolver::solveWithContacts(StepVector& rhs_fields, const Contac
     // The border is Newton's method.
     expected = change.settled ? 0.0 : change.relative * change.relative;
     if (round == 0) m.first_change = change.settled ? 0.0 : change.relative;
+    if ((!rough || last.iterations == 0) && change.relative > kNoCloser * asked) {
+      const double far = change.relative / ContactGuess::settledAt(options.tolerance);
+      closer = std::min(closer, last.residual / (options.tolerance * rhs_norm)) *
+               std::clamp(kNoCloser / far, kMostTightening, kTightening);
+    }
+    asked = change.relative;
   }
 
   report.residual = rhs_norm > 0.0 ? last.residual / rhs_norm : 0.0;

@@ -6,6 +6,7 @@
 #include "coupling/body_schur.h"
 #include "solve/blocked_sum.h"
 #include "solve/kernel_work.h"
+#include "solve/whole_fields.h"
 
 namespace monolith {
 namespace {
@@ -60,6 +61,8 @@ void PackedSystem::set(StepProblem& problem) {
   iterations_ = 0;
   decades_ = 0.0;
   bodies_ += columns_.ownResistance();
+  border_compliance_.resize(0);
+  together_.set(p, scale_, [this](auto& x, auto& y) { apply(faces_, cells_, columns_, x, y); });
 }
 
 void PackedSystem::updateSchur() {
@@ -75,13 +78,31 @@ void PackedSystem::updateSchur() {
     fresh_cost_ = lost_ = 0.0;
     stale_ = false;
   }
+  const Eigen::VectorXd weight = resistanceWeight();
+  S_ = weight.asDiagonal() * resistance_ * weight.asDiagonal();
+  S_ += bodies_ - columns_.ownResistance();
+  S_inverse_ = S_.ldlt().solve(Eigen::MatrixXd::Identity(bodySize(), bodySize()));
+}
+
+Eigen::VectorXd PackedSystem::resistanceWeight() const {
+  const StepProblem& p = *problem_;
   Eigen::VectorXd weight = scale_.cwiseInverse();
   for (std::size_t i = 0; i < p.free.size(); ++i) {
     weight.segment<6>(6 * i) *= std::sqrt(resistanceRatio(p.radius[i], resistance_number_, p.viscous_number));
   }
-  S_ = weight.asDiagonal() * resistance_ * weight.asDiagonal();
-  S_ += bodies_ - columns_.ownResistance();
-  S_inverse_ = S_.ldlt().solve(Eigen::MatrixXd::Identity(bodySize(), bodySize()));
+  return weight;
+}
+
+void PackedSystem::adoptResponse(const Eigen::MatrixXd& K) {
+  const Eigen::MatrixXd inverse = scale_.asDiagonal() * K * scale_.asDiagonal();
+  const Eigen::LLT<Eigen::MatrixXd> factor(inverse);
+  if (factor.info() != Eigen::Success) return;
+  S_inverse_ = inverse;
+  S_ = factor.solve(Eigen::MatrixXd::Identity(bodySize(), bodySize()));
+  const Eigen::VectorXd weight = resistanceWeight().cwiseInverse();
+  resistance_ = weight.asDiagonal() * (S_ - bodies_ + columns_.ownResistance()) * weight.asDiagonal();
+  fresh_cost_ = lost_ = 0.0;
+  stale_ = false;
 }
 
 void PackedSystem::judgeAge() {
@@ -203,8 +224,24 @@ void PackedSystem::residualOfBodies(const BorderedVector& rhs, const SplitVector
 }
 
 void PackedSystem::precondition(const std::vector<float>& from, std::vector<float>& to) {
-  preconditioner_.apply(from.data(), 1.0f / static_cast<float>(flux_weight_), to.data());
-  preconditionBodies(from, to);
+  const float flux_scale = 1.0f / static_cast<float>(flux_weight_);
+  if (together_.regions() == 0) {
+    preconditioner_.apply(from.data(), flux_scale, to.data());
+    preconditionBodies(from, to);
+    return;
+  }
+  // First what liquid and bodies do together; the cycle sees what is left.
+  assignZero(from.size(), common_);
+  assignZero(from.size(), left_);
+  together_.correct(from, common_);
+  apply(faces_single_, cells_single_, columns_single_, common_, left_);
+  countWork(from.size(), 2.0, 6.0 * sizeof(float));
+#pragma omp parallel for simd schedule(static)
+  for (std::size_t i = 0; i < from.size(); ++i) left_[i] = from[i] - left_[i];
+  preconditioner_.apply(left_.data(), flux_scale, to.data());
+  preconditionBodies(left_, to);
+#pragma omp parallel for simd schedule(static)
+  for (std::size_t i = 0; i < from.size(); ++i) to[i] += common_[i];
 }
 
 void PackedSystem::preconditionBodies(const std::vector<float>& from, std::vector<float>& to) const {

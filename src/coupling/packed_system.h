@@ -16,6 +16,7 @@
 #include "coupling/body_columns.h"
 #include "coupling/contact_states.h"
 #include "coupling/liquid_preconditioner.h"
+#include "coupling/rigid_modes.h"
 #include "coupling/step_solver.h"
 #include "solve/fgmres.h"
 #include "solve/split_vector.h"
@@ -56,6 +57,8 @@ class PackedSystem {
 
   // Response of the twists to impulses as S has it.
   Eigen::MatrixXd estimatedResponse() const;
+  // S from a response that was solved for; it ages from then on.
+  void adoptResponse(const Eigen::MatrixXd& K);
 
   // Contacts that take part, of rows with these compliances, and how much more than that each is given.
   void setBorder(const ContactBorder& physical, const Eigen::VectorXd& compliance, double proximity);
@@ -89,6 +92,8 @@ class PackedSystem {
   void preconditionBodies(const std::vector<float>& from, std::vector<float>& to) const;
   Parts liquidParts() const;
   KrylovMaps maps(const BorderedVector& rhs);
+  // From resistance_ to its part in S.
+  Eigen::VectorXd resistanceWeight() const;
   SplitVector split(BorderedVector& x) const;
 
   StepProblem* problem_ = nullptr;
@@ -100,6 +105,8 @@ class PackedSystem {
   BodyColumns<float> columns_single_;
   FaceField<float> transfer_, impulse_;  // of the finest level, see buildFaceBlocks()
   LiquidPreconditioner preconditioner_;
+  RigidModes together_;
+  std::vector<float> common_, left_;  // their part of a direction, and of a residual what it leaves
   Fgmres krylov_;
   double flux_weight_ = 1.0;
   LiquidPlaces<double> before_;  // of the right side, where the bodies' motion is taken from it

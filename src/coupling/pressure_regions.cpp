@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <numeric>
 
@@ -176,6 +177,16 @@ class Runs {
   std::vector<RowKind> kind_;  // of every row of the lattice
 };
 
+// Of a run of cells along x, those next to a wall of the tank.
+long cellsAtWalls(const Lattice& l, std::ptrdiff_t begin, std::ptrdiff_t end) {
+  const std::array<int, 3> first = l.cell(begin);
+  for (const int a : {1, 2}) {
+    if (!l.periodic[a] && (first[a] == 0 || first[a] == l.n[a] - 1)) return static_cast<long>(end - begin);
+  }
+  if (l.periodic[0]) return 0;
+  return (first[0] == 0 ? 1 : 0) + (first[0] + (end - begin) == l.n[0] ? 1 : 0);
+}
+
 }  // namespace
 
 std::vector<PressureRegion> findPressureRegions(const StaggeredCoefficients<double>& c, const BodyRows& rows,
@@ -193,10 +204,25 @@ std::vector<PressureRegion> findPressureRegions(const StaggeredCoefficients<doub
     id_of[run] = id_of[first];
     if (runs.openToAir(run)) regions[id_of[run]].sealed = false;
   }
-  if (std::any_of(regions.begin(), regions.end(), [](const PressureRegion& region) { return region.sealed; })) {
+  std::vector<long> cells(regions.size(), 0), held(cells), touched(cells);
+  runs.forEachRun([&](int run, std::ptrdiff_t begin, std::ptrdiff_t end) {
+    cells[id_of[run]] += static_cast<long>(end - begin);
+    held[id_of[run]] += cellsAtWalls(c.lattice, begin, end);
+  });
+  for (const BodyRow& row : rows.divergence) {
+    const int run = runs.of(row.sample);
+    if (run >= 0) ++(moves[row.body] ? touched : held)[id_of[run]];
+  }
+  for (std::size_t id = 0; id < regions.size(); ++id) {
+    // As much as half the base of a cube.
+    const double little = 0.5 * std::pow(static_cast<double>(cells[id]), 2.0 / 3.0);
+    regions[id].adrift = static_cast<double>(held[id]) < little + static_cast<double>(touched[id]);
+  }
+  const auto wanted = [](const PressureRegion& region) { return region.sealed || region.adrift; };
+  if (std::any_of(regions.begin(), regions.end(), wanted)) {
     runs.forEachRun([&](int run, std::ptrdiff_t begin, std::ptrdiff_t end) {
       PressureRegion& region = regions[id_of[run]];
-      if (!region.sealed) return;
+      if (!wanted(region)) return;
       region.runs.push_back({static_cast<std::int32_t>(begin), static_cast<std::int32_t>(end)});
       region.cells += static_cast<std::size_t>(end - begin);
     });

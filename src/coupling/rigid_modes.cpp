@@ -1,0 +1,200 @@
+#include "coupling/rigid_modes.h"
+
+#include <algorithm>
+
+#include "solve/kernel_work.h"
+
+namespace monolith {
+namespace {
+
+// Below this viscous number what a cycle leaves is no more than the mass.
+constexpr double kLeastNumber = 10.0;
+constexpr double kRoundOff = 1e-10;  // of the largest: a mode that moves nothing
+constexpr std::size_t kRunsWorthSharing = 64;
+
+// What the motion (velocity, rotation) gives axis a at offset x: the part that does not change along the x-axis, and
+// the change.
+std::pair<double, double> alongRun(const Eigen::Matrix<double, 6, 1>& motion, int a, const Eigen::Vector3d& first) {
+  const Eigen::Vector3d v = motion.head<3>(), w = motion.tail<3>();
+  const double slope = a == 1 ? w[2] : a == 2 ? -w[1] : 0.0;
+  return {v[a] + w.cross(first)[a], slope};
+}
+
+}  // namespace
+
+RigidModes::Region RigidModes::makeRegion(const PressureRegion& liquid, int label,
+                                          const std::vector<std::int32_t>& labels, const Eigen::VectorXd& scale) const {
+  const StepProblem& p = *problem_;
+  const Lattice& l = p.grid.lattice;
+  Eigen::AlignedBox3i box;
+  for (const PressureRegion::Run& run : liquid.runs) {
+    for (const std::ptrdiff_t c : {run.begin, run.end - 1}) {
+      const std::array<int, 3> at = l.cell(c);
+      box.extend(Eigen::Vector3i(at[0], at[1], at[2]));
+    }
+  }
+  const Eigen::Vector3d low = p.grid.cellCenter(box.min()[0], box.min()[1], box.min()[2]);
+  const Eigen::Vector3d high = p.grid.cellCenter(box.max()[0], box.max()[1], box.max()[2]);
+  const Eigen::Vector3d centre = 0.5 * (low + high);
+  const double size = std::max(0.5 * (high - low).norm(), p.grid.h);
+  Region out;
+  out.step = p.grid.h / size;
+  const auto end = [&](int axis) { return std::min(box.max()[axis] + 2, l.faceEnd(axis)); };
+  for (int a = 0; a < 3; ++a) {
+    for (int k = box.min()[2]; k < end(2); ++k) {
+      for (int j = box.min()[1]; j < end(1); ++j) {
+        bool before = false;
+        for (int i = box.min()[0]; i < end(0); ++i) {
+          const auto f = l.index(i, j, k);
+          const bool at_it = labels[f] == label || labels[f - l.stride[a]] == label;
+          const bool here = at_it && p.coefficients.mass[a][f] > 0.0;
+          if (here && !before) out.faces[a].push_back({f, f, (p.grid.faceCenter(a, i, j, k) - centre) / size});
+          if (here) out.faces[a].back().end = f + 1;
+          before = here;
+        }
+      }
+    }
+  }
+  std::vector<char> in_it(p.bodies->size(), 0);
+  for (const BodyRow& row : p.rows.divergence) {
+    if (labels[row.sample] == label) in_it[row.body] = 1;
+  }
+  for (std::size_t i = 0; i < p.free.size(); ++i) {
+    if (!in_it[p.free[i]]) continue;
+    // v = v_c + w x (x - c)/size, and the body turns with w/size.
+    Matrix6d twist = Matrix6d::Identity();
+    const Eigen::Vector3d x = ((*p.bodies)[p.free[i]].p_WBcm - centre) / size;
+    for (int q = 0; q < 3; ++q) twist.block<3, 1>(0, 3 + q) = Eigen::Vector3d::Unit(q).cross(x);
+    twist.bottomRightCorner<3, 3>() /= size;
+    const auto first = static_cast<Eigen::Index>(6 * i);
+    out.bodies.emplace_back(first, scale.segment<6>(first).asDiagonal() * twist);
+  }
+  return out;
+}
+
+template <class Real>
+RigidModes::Amplitudes RigidModes::project(const Region& region, const std::vector<Real>& r) const {
+  const std::size_t size = problem_->grid.lattice.size;
+  Amplitudes out = Amplitudes::Zero();
+  for (int a = 0; a < 3; ++a) {
+    const std::vector<Run>& runs = region.faces[a];
+    const Real* field = r.data() + a * size;
+    std::vector<std::pair<double, double>> sums(runs.size());  // and of the moments along x
+#pragma omp parallel for schedule(static) if (runs.size() >= kRunsWorthSharing)
+    for (std::size_t n = 0; n < runs.size(); ++n) {
+      const Real* from = field + runs[n].begin;
+      const auto count = static_cast<int>(runs[n].end - runs[n].begin);
+      Real sum = 0, moment = 0;
+#pragma omp simd reduction(+ : sum, moment)
+      for (int i = 0; i < count; ++i) {
+        sum += from[i];
+        moment += static_cast<Real>(i) * from[i];
+      }
+      sums[n] = {sum, region.step * static_cast<double>(moment)};
+    }
+    const Eigen::Vector3d axis = Eigen::Vector3d::Unit(a);
+    for (std::size_t n = 0; n < runs.size(); ++n) {
+      out[a] += sums[n].first;
+      // w . (x cross e_a)
+      out.tail<3>() +=
+          runs[n].first.cross(axis) * sums[n].first + Eigen::Vector3d::UnitX().cross(axis) * sums[n].second;
+    }
+  }
+  for (const auto& [first, unknowns] : region.bodies) {
+    const auto force = Eigen::Map<const Eigen::Matrix<Real, 6, 1>>(r.data() + 4 * size + first);
+    out += unknowns.transpose() * force.template cast<double>();
+  }
+  return out;
+}
+
+template <class Real>
+void RigidModes::add(const Region& region, const Amplitudes& amplitudes, std::vector<Real>& z) const {
+  const std::size_t size = problem_->grid.lattice.size;
+  for (int a = 0; a < 3; ++a) {
+    const std::vector<Run>& runs = region.faces[a];
+    Real* field = z.data() + a * size;
+#pragma omp parallel for schedule(static) if (runs.size() >= kRunsWorthSharing)
+    for (std::size_t n = 0; n < runs.size(); ++n) {
+      const auto [at_first, slope] = alongRun(amplitudes, a, runs[n].first);
+      const auto constant = static_cast<Real>(at_first), change = static_cast<Real>(slope * region.step);
+      Real* to = field + runs[n].begin;
+      const auto count = static_cast<int>(runs[n].end - runs[n].begin);
+#pragma omp simd
+      for (int i = 0; i < count; ++i) to[i] += constant + change * static_cast<Real>(i);
+    }
+  }
+  for (const auto& [first, unknowns] : region.bodies) {
+    Eigen::Map<Eigen::Matrix<Real, 6, 1>>(z.data() + 4 * size + first) += (unknowns * amplitudes).template cast<Real>();
+  }
+}
+
+void RigidModes::findEnergies(const std::vector<Region*>& regions, const Apply& apply, std::size_t size) const {
+  if (regions.empty()) return;
+  const Lattice& l = problem_->grid.lattice;
+  std::vector<double> x(size), y(size);
+  std::vector<Matrix6d> energy(regions.size());
+  for (int q = 0; q < 6; ++q) {
+    std::fill(x.begin(), x.end(), 0.0);
+    for (const Region* region : regions) add(*region, Amplitudes::Unit(q), x);
+    apply(x, y);
+    for (std::size_t i = 0; i < regions.size(); ++i) energy[i].col(q) = project(*regions[i], y);
+  }
+  // Around a periodic axis nothing turns.
+  std::vector<int> used = {0, 1, 2};
+  for (int q = 0; q < 3; ++q) {
+    if (!l.periodic[(q + 1) % 3] && !l.periodic[(q + 2) % 3]) used.push_back(3 + q);
+  }
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    Eigen::MatrixXd part = energy[i](used, used);
+    part = (0.5 * (part + part.transpose())).eval();
+    part.diagonal().array() += kRoundOff * part.diagonal().maxCoeff();
+    const Eigen::LLT<Eigen::MatrixXd> factor(part);
+    if (factor.info() != Eigen::Success) continue;  // no correction
+    const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(part.rows(), part.cols());
+    const Eigen::MatrixXd inverse = factor.solve(identity);
+    regions[i]->inverse(used, used) = inverse;
+  }
+}
+
+void RigidModes::set(const StepProblem& problem, const Eigen::VectorXd& scale, const Apply& apply) {
+  problem_ = &problem;
+  regions_.clear();
+  const auto isAdrift = [](const PressureRegion& region) { return region.adrift; };
+  const auto& liquid = problem.regions;
+  if (problem.viscous_number < kLeastNumber || std::none_of(liquid.begin(), liquid.end(), isAdrift)) return;
+  const Lattice& l = problem.grid.lattice;
+  std::vector<std::int32_t> labels(l.size, -1);
+  for (std::size_t id = 0; id < liquid.size(); ++id) {
+    if (!liquid[id].adrift) continue;
+    for (const PressureRegion::Run& run : liquid[id].runs) {
+      std::fill(labels.begin() + run.begin, labels.begin() + run.end, static_cast<std::int32_t>(id));
+    }
+  }
+  fillHalo(l, labels);
+  for (std::size_t id = 0; id < liquid.size(); ++id) {
+    if (liquid[id].adrift) regions_.push_back(makeRegion(liquid[id], static_cast<int>(id), labels, scale));
+  }
+  const std::size_t size = 4 * l.size + static_cast<std::size_t>(scale.size());
+  std::vector<Region*> alone;  // all at once
+  for (Region& region : regions_) {
+    if (region.bodies.empty()) {
+      alone.push_back(&region);
+    } else {
+      findEnergies({&region}, apply, size);
+    }
+  }
+  findEnergies(alone, apply, size);
+}
+
+void RigidModes::correct(const std::vector<float>& r, std::vector<float>& z) const {
+  for (const Region& region : regions_) {
+    std::size_t faces = 0;
+    for (const auto& runs : region.faces) {
+      for (const Run& run : runs) faces += static_cast<std::size_t>(run.end - run.begin);
+    }
+    countWork(faces, 6.0, 3.0 * sizeof(float));
+    add(region, region.inverse * project(region, r), z);
+  }
+}
+
+}  // namespace monolith
