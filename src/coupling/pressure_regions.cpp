@@ -204,19 +204,19 @@ std::vector<PressureRegion> findPressureRegions(const StaggeredCoefficients<doub
     id_of[run] = id_of[first];
     if (runs.openToAir(run)) regions[id_of[run]].sealed = false;
   }
-  std::vector<long> cells(regions.size(), 0), held(cells), touched(cells);
+  std::vector<long> cells(regions.size(), 0), held(cells);
   runs.forEachRun([&](int run, std::ptrdiff_t begin, std::ptrdiff_t end) {
     cells[id_of[run]] += static_cast<long>(end - begin);
     held[id_of[run]] += cellsAtWalls(c.lattice, begin, end);
   });
   for (const BodyRow& row : rows.divergence) {
     const int run = runs.of(row.sample);
-    if (run >= 0) ++(moves[row.body] ? touched : held)[id_of[run]];
+    if (run >= 0 && !moves[row.body]) ++held[id_of[run]];
   }
   for (std::size_t id = 0; id < regions.size(); ++id) {
     // As much as half the base of a cube.
     const double little = 0.5 * std::pow(static_cast<double>(cells[id]), 2.0 / 3.0);
-    regions[id].adrift = static_cast<double>(held[id]) < little + static_cast<double>(touched[id]);
+    regions[id].adrift = static_cast<double>(held[id]) < little;
   }
   const auto wanted = [](const PressureRegion& region) { return region.sealed || region.adrift; };
   if (std::any_of(regions.begin(), regions.end(), wanted)) {

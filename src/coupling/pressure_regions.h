@@ -18,7 +18,7 @@ struct PressureRegion {
 
   bool sealed = false;     // no face towards the air
   bool null_mode = false;  // sealed, and no free body feels the constant: it is in the operator's null space
-  bool adrift = false;     // little holds it: walls and bodies that are not free, against its size and free bodies
+  bool adrift = false;     // few of its cells are at walls or at bodies that are not free
   std::vector<Run> runs;   // of regions that are sealed or adrift
   std::size_t cells = 0;   // in them
 

@@ -67,7 +67,7 @@ void appendPartContacts(const Part& a, const Part& b, double margin, std::vector
   if (!a.isMesh()) {
     const std::size_t before = contacts.size();
     appendPartContacts(b, a, margin, contacts);
-    for (std::size_t i = before; i < contacts.size(); ++i) contacts[i].normal = -contacts[i].normal;
+    for (std::size_t i = before; i < contacts.size(); ++i) contacts[i].turn();
     return;
   }
   std::vector<Contact> found;

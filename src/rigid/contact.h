@@ -19,6 +19,15 @@ struct Contact {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();   // m, in W
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
   double gap = 0.0;                                  // m, negative when they penetrate
+  // As the bodies move the point goes along with body_a by this share, for the rest with body_b: with a corner, not
+  // with the face it is on; with a ball that rolls. Negative: not known.
+  double share_a = -1.0;
+
+  // The bodies in the other order.
+  void turn() {
+    normal = -normal;
+    if (share_a >= 0.0) share_a = 1.0 - share_a;
+  }
 };
 
 // The tank's inside, and which of its axes have no walls.

@@ -16,6 +16,7 @@ using Eigen::Vector3d;
 const double kFaceSine = std::sin(10.0 * M_PI / 180.0);
 constexpr double kClipTolerance = 1e-9;  // m; a corner on the boundary is inside
 constexpr double kMergeFraction = 1e-4;  // of the thinner shape
+constexpr double kMissedFraction = 1e-3;
 
 double thickness(const ConvexShape& shape) {
   return shape.kind == Shape::Kind::kBox ? shape.half.minCoeff() : std::min(shape.radius, shape.half_length);
@@ -34,7 +35,10 @@ Polygon clipToPrism(Polygon polygon, const Face& face) {
       const Vector3d& q = polygon[(j + 1) % polygon.size()];
       const double dp = outside(p), dq = outside(q);
       if (dp <= kClipTolerance) kept.push_back(p);
-      if ((dp > kClipTolerance) != (dq > kClipTolerance)) kept.push_back(p + (q - p) * (dp / (dp - dq)));
+      // Where both are at the boundary to round-off, the crossing is still between them.
+      if ((dp > kClipTolerance) != (dq > kClipTolerance)) {
+        kept.push_back(p + (q - p) * std::clamp(dp / (dp - dq), 0.0, 1.0));
+      }
     }
     polygon = std::move(kept);
   }
@@ -43,12 +47,14 @@ Polygon clipToPrism(Polygon polygon, const Face& face) {
 
 void appendFaceContacts(const Face& face, const ConvexShape& other, bool face_is_of_a, double margin,
                         std::vector<Contact>& contacts) {
-  for (const Vector3d& point : clipToPrism(pieceTowards(other, -face.normal), face)) {
+  const Polygon piece = pieceTowards(other, -face.normal);
+  for (const Vector3d& point : clipToPrism(piece, face)) {
     Contact contact;
     contact.gap = face.normal.dot(point - face.polygon.front());
     if (contact.gap > margin) continue;
     contact.normal = face_is_of_a ? Vector3d(-face.normal) : face.normal;
     contact.point = point - 0.5 * contact.gap * face.normal;
+    if (std::find(piece.begin(), piece.end(), point) != piece.end()) contact.share_a = face_is_of_a ? 0.0 : 1.0;
     contacts.push_back(contact);
   }
 }
@@ -86,6 +92,13 @@ void appendEdgeContacts(const ConvexShape& a, const ConvexShape& b, const Separa
   contacts.push_back({0, 0, 0.5 * (nearest.first + nearest.second), n, separation.distance});
 }
 
+// Contact::share_a where one is a sphere: with two, the smaller has more of it; a ball rolls on all else as on a plane.
+double sphereShare(const ConvexShape& a, const ConvexShape& b) {
+  if (b.kind != Shape::Kind::kSphere) return 1.0;
+  if (a.kind != Shape::Kind::kSphere) return 0.0;
+  return b.radius / (a.radius + b.radius);
+}
+
 }  // namespace
 
 void appendConvexContacts(const ConvexShape& a, const ConvexShape& b, double margin, std::vector<Contact>& contacts) {
@@ -96,7 +109,7 @@ void appendConvexContacts(const ConvexShape& a, const ConvexShape& b, double mar
   if (a_is_sphere || b.kind == Shape::Kind::kSphere) {
     const Vector3d surface = a_is_sphere ? Vector3d(a.centre() - a.radius * n) : Vector3d(b.centre() + b.radius * n);
     const Vector3d point = surface + (a_is_sphere ? -0.5 : 0.5) * separation.distance * n;
-    contacts.push_back({0, 0, point, n, separation.distance});
+    contacts.push_back({0, 0, point, n, separation.distance, sphereShare(a, b)});
     return;
   }
   const Face face_a = faceTowards(a, -n), face_b = faceTowards(b, n);
@@ -109,7 +122,15 @@ void appendConvexContacts(const ConvexShape& a, const ConvexShape& b, double mar
     const bool take_a = sine_a < sine_b - 1e-9;
     appendFaceContacts(take_a ? face_a : face_b, take_a ? b : a, take_a, margin, found);
   }
-  if (found.empty()) appendEdgeContacts(a, b, separation, faces, margin, found);
+  if (found.empty()) {
+    appendEdgeContacts(a, b, separation, faces, margin, found);
+  } else {
+    // What lies over the face may miss where they are nearest: a cylinder's side across a box's edge.
+    const auto shallower = [](const Contact& p, const Contact& q) { return p.gap < q.gap; };
+    const double least = std::min_element(found.begin(), found.end(), shallower)->gap;
+    const double missed = kMissedFraction * std::min(thickness(a), thickness(b));
+    if (least > separation.distance + missed) appendEdgeContacts(a, b, separation, false, margin, found);
+  }
   mergeCoincident(found, kMergeFraction * std::min(thickness(a), thickness(b)));
   reduceContacts(found, kMostPointsPerConvexPair);
   contacts.insert(contacts.end(), found.begin(), found.end());

@@ -76,7 +76,7 @@ bool sampleFacing(const ConvexShape& shape, const Vector3d& point, const Vector3
 void appendCorner(const Corner& corner, const DistanceSample& sample, double margin, std::vector<Contact>& contacts) {
   if (sample.distance > margin) return;
   const Vector3d point = corner.point - 0.5 * sample.distance * sample.gradient;
-  contacts.push_back({0, 0, point, sample.gradient, sample.distance});
+  contacts.push_back({0, 0, point, sample.gradient, sample.distance, 1.0});
 }
 
 }  // namespace monolith

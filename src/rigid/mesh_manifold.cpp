@@ -79,7 +79,7 @@ void appendCornersOn(const PlacedMesh& mesh, const std::vector<Corner>& corners,
 }
 
 void turnNormals(std::vector<Contact>& contacts) {
-  for (Contact& contact : contacts) contact.normal = -contact.normal;
+  for (Contact& contact : contacts) contact.turn();
 }
 
 void finish(std::vector<Contact>& found, double merge_distance, std::vector<Contact>& contacts) {
@@ -94,7 +94,7 @@ void appendSphereContacts(const PlacedMesh& mesh, const ConvexShape& sphere, dou
   const DistanceSample nearest = mesh.surface->sample(centre);
   const auto append = [&](const Vector3d& outward, double gap) {
     const Vector3d n = mesh.X_WG.linear() * outward;  // towards the sphere, which is b
-    contacts.push_back({0, 0, sphere.centre() - (sphere.radius + 0.5 * gap) * n, -n, gap});
+    contacts.push_back({0, 0, sphere.centre() - (sphere.radius + 0.5 * gap) * n, -n, gap, 0.0});
   };
   if (nearest.distance - sphere.radius > margin) return;
   if (nearest.distance <= 1e-9 * size(mesh)) {

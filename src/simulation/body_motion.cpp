@@ -61,11 +61,19 @@ std::vector<char> closingBodies(const std::vector<RigidBody>& bodies, const std:
 
 namespace {
 
-// With the centres of mass: lever arms stay as they are where the gap is known.
+// With the centres of mass, by each contact's share: the lever arm of a body that rolls stays as it is. A point that
+// lagged behind would push it on.
 void movePoints(const std::vector<RigidBody>& from, const std::vector<RigidBody>& to, std::vector<Contact>& contacts) {
   const auto shift = [&](int body) -> Vector3d { return to[body].p_WBcm - from[body].p_WBcm; };
+  const auto isFree = [&](int body) { return from[body].motion == BodyMotion::kFree; };
   for (Contact& c : contacts) {
-    c.point += c.body_b == Contact::kWall ? shift(c.body_a) : Vector3d(0.5 * (shift(c.body_a) + shift(c.body_b)));
+    if (c.body_b == Contact::kWall) {
+      c.point += shift(c.body_a);
+      continue;
+    }
+    double share = c.share_a;
+    if (share < 0.0) share = !isFree(c.body_a) ? 0.0 : !isFree(c.body_b) ? 1.0 : 0.5;
+    c.point += share * shift(c.body_a) + (1.0 - share) * shift(c.body_b);
   }
 }
 

@@ -11,8 +11,9 @@ namespace {
 constexpr int kMaximumSteps = 60;
 constexpr double kToBoundary = 0.99;  // part of the way there that a step goes at most
 constexpr double kShort = 0.1;        // a step that gets nowhere
-// Residual, relative to w0, from which |w_t| is differentiated; and where that has led nowhere, from the start.
-constexpr double kNear[] = {0.1, 1e300};
+// Residual, relative to w0, from which |w_t| is differentiated; where that has led nowhere never, and then from the
+// start.
+constexpr double kNear[] = {0.1, 0.0, 1e300};
 constexpr double kLeastStep = 1e-10;
 // Residuals of the law, relative to w0, at which Newton's method is tried.
 constexpr double kWorthPolishing = 1e-3, kPolishAgain = 0.3;

@@ -7,7 +7,7 @@
 // of Nesterov & Todd (1997, Math. Oper. Res. 22, 1) and Mehrotra's predictor and corrector (1992, SIAM J. Optim. 2,
 // 575), formulae as in Vandenberghe (2010, The CVXOPT linear and quadratic cone program solvers). The derivative of
 // |w_t| is in the step's matrix near the solution; farther off, and where such a step gets nowhere, |w_t| is held at
-// what it is, which is slower and hardly ever fails.
+// what it is, which is slower and fails less often. Where neither leads to the law, each is tried alone.
 //
 // A load that redundant contacts share is spread over all of them, where alternating and sweeping pass it on and on: 20
 // to 60 steps, each a factorisation, whatever the number of contacts.

@@ -104,6 +104,25 @@ TEST(BoxContacts, CornerAndEdgeOnFace) {
   expectAll(corner, Vector3d::UnitZ(), -0.003);
 }
 
+// What two surfaces have in common is bounded by both, also where their planes are one but for round-off.
+TEST(BoxContacts, OfBoxesOnOneFloorLieBetweenThem) {
+  const Shape box = boxShape(Vector3d(0.2, 0.2, 0.2));
+  int found = 0;
+  for (int i = -20; i <= 20; ++i) {
+    for (const double tilt : {0.0, 1e-9, 2e-9, 1e-8}) {
+      const Eigen::Isometry3d X_WA = pose(Vector3d(-0.207, 0.01, 0.1e-9 * i),
+                                          turn(3.0, Vector3d::UnitZ()) * turn(tilt / M_PI * 180.0, Vector3d::UnitX()));
+      for (const Contact& contact : detectPair(box, X_WA, box, pose(Vector3d::Zero()), 0.02)) {
+        ++found;
+        EXPECT_LT(contact.point.cwiseAbs()[1], 0.12) << i;
+        EXPECT_LT(contact.point.cwiseAbs()[2], 0.11) << i;
+        EXPECT_GT(contact.gap, 0.0) << i;
+      }
+    }
+  }
+  EXPECT_GT(found, 100);
+}
+
 TEST(CylinderContacts, StandsOnManyRimPoints) {
   const Shape cylinder = cylinderShape(0.3, 1.0);
   for (const double gap : {-0.004, 0.0, 0.004}) {
@@ -145,6 +164,23 @@ TEST(CylinderContacts, SideBySideAndCrossed) {
                                   pose(Vector3d::Zero()), 0.01);
   EXPECT_EQ(crossed.size(), 1u);
   expectAll(crossed, Vector3d::UnitX(), 0.005);
+}
+
+// A cylinder's side across a box's edge: over the face lies only what is farther off.
+TEST(CylinderContacts, NothingIsNearerThanTheContacts) {
+  test::Random random(11);
+  const Shape cylinder = cylinderShape(0.2, 0.5), box = boxShape(Vector3d(0.5, 0.3, 0.4));
+  int near = 0;
+  for (int trial = 0; trial < 20000; ++trial) {
+    const Eigen::Isometry3d X_WA = pose(random.inCube(0.6), random.rotation()), X_WB = pose(Vector3d::Zero());
+    const double distance = findSeparation(placeConvex(cylinder, X_WA), placeConvex(box, X_WB)).distance;
+    if (std::abs(distance) > 0.02) continue;
+    ++near;
+    double least = 1e300;
+    for (const Contact& contact : detectPair(cylinder, X_WA, box, X_WB, 0.03)) least = std::min(least, contact.gap);
+    EXPECT_LT(least, distance + 1e-3) << trial;
+  }
+  EXPECT_GT(near, 500);
 }
 
 TEST(CylinderContacts, StacksOnACylinder) {

@@ -160,6 +160,44 @@ TEST(Contact, ABodyThatIsPushedWhereNothingElseActsGoesAlong) {
   }
 }
 
+// A contact that did not go along with what rolls would push it on: on a fixed box, or a free one on rollers' ways, as
+// on the tank's floor.
+TEST(Contact, WhatRollsOnAnotherBodyKeepsItsSpeed) {
+  constexpr double kRadius = 0.03, kSpeed = 0.02, kTop = 0.1;
+  for (const TimeStepping scheme : {TimeStepping::kBdf2, TimeStepping::kBackwardEuler}) {
+    for (const bool ball : {true, false}) {
+      for (const bool fixed : {true, false}) {
+        Scene scene;
+        scene.source = "test";
+        scene.tank.size = {0.6, 0.4, 0.3};
+        scene.tank.cell_width = 0.05;
+        scene.gravity = {0.0, 0.0, -9.81};
+        scene.contact.friction = 0.5;
+        scene.solver.time_stepping = scheme;
+        scene.bodies.push_back(boxBody("table", {0.5, 0.3, kTop}, 20000.0, {0.3, 0.2, 0.5 * kTop}));
+        if (fixed) scene.bodies[0].motion = BodyMotion::kFixed;
+        BodyDescription roller = sphereBody("roller", kRadius, 1000.0, {0.2, 0.2, kTop + kRadius});
+        if (!ball) {
+          Shape& shape = roller.shapes[0];
+          shape.kind = Shape::Kind::kCylinder;
+          shape.length = 0.08;
+          roller.X_WB.linear() = Eigen::AngleAxisd(0.5 * M_PI, Eigen::Vector3d::UnitX()).toRotationMatrix();
+        }
+        roller.velocity = {kSpeed, 0.0, 0.0};
+        roller.angular_velocity = {0.0, kSpeed / kRadius, 0.0};
+        scene.bodies.push_back(roller);
+        Simulation simulation(scene);
+        for (int i = 0; i < 150; ++i) {
+          const StepReport r = simulation.step();
+          ASSERT_TRUE(r.committed()) << r.message;
+        }
+        EXPECT_NEAR(simulation.bodyStates()[1].velocity[0], kSpeed, 1e-4)
+            << (ball ? "ball" : "cylinder") << (fixed ? ", fixed" : ", free");
+      }
+    }
+  }
+}
+
 // The bar is at rest when contacts are looked for, and turns through the block within the step.
 TEST(Contact, IsFoundWhereATorqueOnlyBeginsToTurnABody) {
   BodyDescription block = boxBody("block", {0.05, 0.2, 0.2}, 1000.0, {1.18, 0.5, 0.535});
