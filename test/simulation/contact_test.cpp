@@ -160,8 +160,7 @@ TEST(Contact, ABodyThatIsPushedWhereNothingElseActsGoesAlong) {
   }
 }
 
-// A contact that did not go along with what rolls would push it on: on a fixed box, or a free one on rollers' ways, as
-// on the tank's floor.
+// A contact that did not go along with what rolls would push it on.
 TEST(Contact, WhatRollsOnAnotherBodyKeepsItsSpeed) {
   constexpr double kRadius = 0.03, kSpeed = 0.02, kTop = 0.1;
   for (const TimeStepping scheme : {TimeStepping::kBdf2, TimeStepping::kBackwardEuler}) {
