@@ -46,9 +46,9 @@ void ContactGuess::setOpen() {
   states_ = openStates(rows_);
 }
 
-void ContactGuess::startFrom(const Eigen::VectorXd& twists, CoupledReport& report) {
+void ContactGuess::startFrom(const Eigen::VectorXd& twists, bool rough, CoupledReport& report) {
   const Eigen::VectorXd w0 = velocities(twists);
-  const FrictionReport friction = solveFrictionalContact({D_, w0, rows_.friction}, closeness(true), r_);
+  const FrictionReport friction = solveFrictionalContact({D_, w0, rows_.friction}, closeness(rough), r_);
   report.friction_iterations += friction.iterations;
   states_ = contactStates(rows_, D_, D_ * r_ + w0, r_);
 }

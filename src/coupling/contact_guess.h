@@ -27,8 +27,8 @@ class ContactGuess {
   // None presses.
   void setOpen();
 
-  // What the contacts do where the bodies would move with these twists without them.
-  void startFrom(const Eigen::VectorXd& twists, CoupledReport& report);
+  // What the contacts do where the bodies would move with these twists without them. rough: twists and response are.
+  void startFrom(const Eigen::VectorXd& twists, bool rough, CoupledReport& report);
 
   // Of a solution with the present impulses; error: its own, relative.
   void learnFrom(const Eigen::VectorXd& twists, double error);

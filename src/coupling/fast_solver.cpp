@@ -17,6 +17,8 @@ constexpr double kRoughPart = 0.03;
 // Rounds after which the response of the bodies in contact is no longer estimated but solved for, and how closely.
 constexpr int kRoundsOnEstimate = 10;
 constexpr double kResponseTolerance = 1e-6;
+// Without liquid the response is exact from the start, and one round is as good as any.
+constexpr int kDryRounds = 2;
 constexpr double kTightening = 0.3;  // of the tolerance in each of those rounds
 // In others the contacts may come no closer to settling by this part: what they see then is the solve's error, which
 // is to be smaller, as much as they are too far.
@@ -27,6 +29,15 @@ constexpr double kRoundOff = 1e-13;
 // part of the contact's response. Without it what redundant contacts do one by one is as sensitive as
 // kContactCompliance is small.
 constexpr double kProximity = 1e-4 / kContactCompliance;  // times its compliance
+
+// Without liquid at any body S is their inertia, and exact.
+bool touchLiquid(const BodyRows& rows) {
+  bool any = !rows.divergence.empty() || !rows.enclosed.empty();
+  for (const auto* kind : {&rows.normal, &rows.shear, &rows.drag}) {
+    for (const auto& samples : *kind) any = any || !samples.empty();
+  }
+  return any;
+}
 
 }  // namespace
 
@@ -108,12 +119,14 @@ CoupledReport FastSolver::solveWithContacts(StepVector& rhs_fields, const Contac
   if (!std::isfinite(rhs_norm)) return m.notConverged(report, "what acts on liquid and bodies is too large a number");
   const Eigen::Index count = contacts.count();
 
+  const bool wet = touchLiquid(p.rows);
+  const int on_estimate = wet ? kRoundsOnEstimate : 0;
   ContactGuess guess(contacts, r, options.tolerance);
   if (count > 0) {
     guess.setResponse(system.estimatedResponse());
     // One cycle on the whole residual says roughly how the bodies would move without contact.
     system.setBorder(makeBorder(contacts, openStates(contacts)), guess.compliance(), kProximity);
-    guess.startFrom(system.improvedTwists(rhs, x), report);
+    guess.startFrom(wet ? system.improvedTwists(rhs, x) : system.moveDry(rhs, x), wet, report);
     // What presses the contacts may be all that there is.
     rhs_norm = std::max(rhs_norm, bodiesNorm(p, guess.push()));
   }
@@ -124,12 +137,13 @@ CoupledReport FastSolver::solveWithContacts(StepVector& rhs_fields, const Contac
   double asked = std::numeric_limits<double>::infinity();  // by the round before
   double closer = 1.0;
   KrylovReport last;
-  KrylovPast past = count > 0 ? KrylovPast::kDirection : KrylovPast::kNothing;
-  for (int round = 0; round < options.maximum_rounds && !lawful; ++round) {
+  KrylovPast past = count > 0 && wet ? KrylovPast::kDirection : KrylovPast::kNothing;
+  const int rounds = wet || count == 0 ? options.maximum_rounds : std::min(kDryRounds, options.maximum_rounds);
+  for (int round = 0; round < rounds && !lawful; ++round) {
     // On the exact response the impulses are right but for the shift and are given; what redundant contacts do one by
     // one is too sensitive to be solved for over and over.
-    const bool given = round >= kRoundsOnEstimate;
-    if (round == kRoundsOnEstimate) {
+    const bool given = count > 0 && round >= on_estimate;
+    if (given && wet && round == on_estimate) {
       Eigen::MatrixXd K;
       if (!m.solveResponse(contacts, options, report, K)) break;
       past = KrylovPast::kNothing;
@@ -139,8 +153,9 @@ CoupledReport FastSolver::solveWithContacts(StepVector& rhs_fields, const Contac
     ContactBorder border;
     m.appendBorder(contacts, states, guess.compliance(), r, border, rhs, x);
     if (given) system.setForces(gatherBodies(p, rhs_fields.bodies) + guess.push(), rhs);
+    if (given && !wet) system.moveDry(rhs, x);
     // Given impulses are judged by the velocities that come of them, which the solve's error must not drown.
-    if (given) closer = std::pow(kTightening, round - kRoundsOnEstimate + 1);
+    if (given) closer = std::pow(kTightening, round - on_estimate + 1);
     const bool rough = count > 0 && !given && expected > ContactGuess::settledAt(options.tolerance);
     last = system.solve(rhs, x, std::max(closer * options.tolerance, kRoundOff) * rhs_norm, rough ? kRoughPart : 0.0,
                         options, report, past);

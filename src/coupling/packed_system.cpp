@@ -298,6 +298,12 @@ KrylovMaps PackedSystem::maps(const BorderedVector& rhs) {
           [this](const auto& from, auto& to) { preconditionBodies(from, to); }};
 }
 
+Eigen::VectorXd PackedSystem::moveDry(const BorderedVector& rhs, BorderedVector& x) const {
+  Eigen::Map<Eigen::VectorXd>(x.rest.data(), bodySize()) =
+      S_inverse_ * Eigen::Map<const Eigen::VectorXd>(rhs.rest.data(), bodySize());
+  return twists(x);
+}
+
 Eigen::VectorXd PackedSystem::improvedTwists(const BorderedVector& rhs, BorderedVector& x) {
   const std::vector<float>& z = krylov_.firstDirection(maps(rhs), split(x));
   const Eigen::VectorXf change = Eigen::Map<const Eigen::VectorXf>(z.data() + liquidSize(), bodySize());

@@ -63,6 +63,8 @@ class PackedSystem {
   // Contacts that take part, of rows with these compliances, and how much more than that each is given.
   void setBorder(const ContactBorder& physical, const Eigen::VectorXd& compliance, double proximity);
 
+  // The motion of bodies that no liquid touches, given the forces on them: S is exact. Returns the twists.
+  Eigen::VectorXd moveDry(const BorderedVector& rhs, BorderedVector& x) const;
   // Twists of x after one cycle of the preconditioner on its residual. The right side is left as it was.
   Eigen::VectorXd improvedTwists(const BorderedVector& rhs, BorderedVector& x);
   // Until the residual is `goal`, or `part` of what it was at first. past: of the call before, improvedTwists() or
