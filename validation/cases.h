@@ -12,5 +12,7 @@ bool runSolvers();
 bool runBlocks();
 // Speed and error of the demo against its step, tolerance and cell width.
 bool runPace();
+// Whether and how fast piles of bodies and thick liquid that nothing holds are solved.
+bool runHard();
 
 }  // namespace monolith

@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
       {"solvers", runSolvers},
       {"blocks", runBlocks},
       {"pace", runPace},
+      {"hard", runHard},
   };
   const std::string first = argc < 2 ? "--help" : argv[1];
   if (first == "--help" || first == "-h") {

@@ -9,7 +9,8 @@
 namespace monolith {
 namespace {
 
-constexpr int kMaximumAlternations = 10;
+constexpr int kMaximumAlternations = 100;
+constexpr int kPatience = 10;              // alternations that come no closer by kCloser
 constexpr int kSweepsPerAlternation = 50;  // of the friction problem, which need not be solved closely
 constexpr double kCloser = 0.5;
 
@@ -21,8 +22,8 @@ int alternateProjections(const FrictionProblem& problem, Eigen::VectorXd r, Clos
   const bool frictionless = !(mu.maxCoeff() > 0.0);
   if (frictionless) r.tail(2 * m).setZero();
   double least = std::numeric_limits<double>::infinity();
-  int iterations = 0;
-  for (int it = 0; it < kMaximumAlternations; ++it) {
+  int iterations = 0, in_vain = 0;
+  for (int it = 0; it < kMaximumAlternations && in_vain < kPatience; ++it) {
     ++iterations;
     Eigen::VectorXd lambda;
     const LcpReport lcp =
@@ -40,8 +41,10 @@ int alternateProjections(const FrictionProblem& problem, Eigen::VectorXd r, Clos
     double residual;
     if (closest.offer(r, &residual)) break;
     // Worth a try whenever alternation has come clearly closer.
+    ++in_vain;
     if (residual > kCloser * least) continue;
     least = residual;
+    in_vain = 0;
     iterations += polishByNewton(problem, r, closest);
     if (closest.arrived()) break;
   }

@@ -175,13 +175,10 @@ TEST(Contact, WhatRollsOnAnotherBodyKeepsItsSpeed) {
         scene.solver.time_stepping = scheme;
         scene.bodies.push_back(boxBody("table", {0.5, 0.3, kTop}, 20000.0, {0.3, 0.2, 0.5 * kTop}));
         if (fixed) scene.bodies[0].motion = BodyMotion::kFixed;
-        BodyDescription roller = sphereBody("roller", kRadius, 1000.0, {0.2, 0.2, kTop + kRadius});
-        if (!ball) {
-          Shape& shape = roller.shapes[0];
-          shape.kind = Shape::Kind::kCylinder;
-          shape.length = 0.08;
-          roller.X_WB.linear() = Eigen::AngleAxisd(0.5 * M_PI, Eigen::Vector3d::UnitX()).toRotationMatrix();
-        }
+        const Eigen::Vector3d start(0.2, 0.2, kTop + kRadius);
+        BodyDescription roller =
+            ball ? sphereBody("roller", kRadius, 1000.0, start) : cylinderBody("roller", kRadius, 0.08, 1000.0, start);
+        if (!ball) roller.X_WB.linear() = Eigen::AngleAxisd(0.5 * M_PI, Eigen::Vector3d::UnitX()).toRotationMatrix();
         roller.velocity = {kSpeed, 0.0, 0.0};
         roller.angular_velocity = {0.0, kSpeed / kRadius, 0.0};
         scene.bodies.push_back(roller);
