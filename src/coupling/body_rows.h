@@ -30,6 +30,15 @@ struct BodyRows {
   std::array<std::vector<BodyRow>, 3> normal;  // per cell: adds to U_a[c + a] - U_a[c]
   std::array<std::vector<BodyRow>, 3> shear;   // per edge: adds to t
   std::array<std::vector<BodyRow>, 3> drag;    // per sliver face: velocity of the solid there
+
+  // Whether no liquid is at any body.
+  bool empty() const {
+    bool none = divergence.empty() && enclosed.empty();
+    for (const auto* kind : {&normal, &shear, &drag}) {
+      for (const auto& samples : *kind) none = none && samples.empty();
+    }
+    return none;
+  }
 };
 
 // Appends rows that were found part by part, in order.

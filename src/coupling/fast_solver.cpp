@@ -30,15 +30,6 @@ constexpr double kRoundOff = 1e-13;
 // kContactCompliance is small.
 constexpr double kProximity = 1e-4 / kContactCompliance;  // times its compliance
 
-// Without liquid at any body S is their inertia, and exact.
-bool touchLiquid(const BodyRows& rows) {
-  bool any = !rows.divergence.empty() || !rows.enclosed.empty();
-  for (const auto* kind : {&rows.normal, &rows.shear, &rows.drag}) {
-    for (const auto& samples : *kind) any = any || !samples.empty();
-  }
-  return any;
-}
-
 }  // namespace
 
 struct FastSolver::Impl {
@@ -119,7 +110,8 @@ CoupledReport FastSolver::solveWithContacts(StepVector& rhs_fields, const Contac
   if (!std::isfinite(rhs_norm)) return m.notConverged(report, "what acts on liquid and bodies is too large a number");
   const Eigen::Index count = contacts.count();
 
-  const bool wet = touchLiquid(p.rows);
+  // Without liquid at any body S is their inertia, and exact.
+  const bool wet = !p.rows.empty();
   const int on_estimate = wet ? kRoundsOnEstimate : 0;
   ContactGuess guess(contacts, r, options.tolerance);
   if (count > 0) {

@@ -61,7 +61,7 @@ void PackedSystem::set(StepProblem& problem) {
   iterations_ = 0;
   decades_ = 0.0;
   bodies_ += columns_.ownResistance();
-  border_compliance_.resize(0);
+  border_compliance_.resize(0);  // that of the last step: apply() has none now
   together_.set(p, scale_, [this](auto& x, auto& y) { apply(faces_, cells_, columns_, x, y); });
 }
 

@@ -128,10 +128,10 @@ void RigidModes::add(const Region& region, const Amplitudes& amplitudes, std::ve
   }
 }
 
-void RigidModes::findEnergies(const std::vector<Region*>& regions, const Apply& apply, std::size_t size) const {
+void RigidModes::findEnergies(const std::vector<Region*>& regions, const Apply& apply, std::vector<double>& x,
+                              std::vector<double>& y) const {
   if (regions.empty()) return;
   const Lattice& l = problem_->grid.lattice;
-  std::vector<double> x(size), y(size);
   std::vector<Matrix6d> energy(regions.size());
   for (int q = 0; q < 6; ++q) {
     std::fill(x.begin(), x.end(), 0.0);
@@ -174,16 +174,16 @@ void RigidModes::set(const StepProblem& problem, const Eigen::VectorXd& scale, c
   for (std::size_t id = 0; id < liquid.size(); ++id) {
     if (liquid[id].adrift) regions_.push_back(makeRegion(liquid[id], static_cast<int>(id), labels, scale));
   }
-  const std::size_t size = 4 * l.size + static_cast<std::size_t>(scale.size());
+  std::vector<double> x(4 * l.size + static_cast<std::size_t>(scale.size())), y(x.size());
   std::vector<Region*> alone;  // all at once
   for (Region& region : regions_) {
     if (region.bodies.empty()) {
       alone.push_back(&region);
     } else {
-      findEnergies({&region}, apply, size);
+      findEnergies({&region}, apply, x, y);
     }
   }
-  findEnergies(alone, apply, size);
+  findEnergies(alone, apply, x, y);
 }
 
 void RigidModes::correct(const std::vector<float>& r, std::vector<float>& z) const {

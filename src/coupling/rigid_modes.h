@@ -56,7 +56,9 @@ class RigidModes {
   template <class Real>
   void add(const Region& region, const Amplitudes& a, std::vector<Real>& z) const;
   // R^T A R of these regions, which no body joins.
-  void findEnergies(const std::vector<Region*>& regions, const Apply& apply, std::size_t size) const;
+  // x, y: work space.
+  void findEnergies(const std::vector<Region*>& regions, const Apply& apply, std::vector<double>& x,
+                    std::vector<double>& y) const;
 
   const StepProblem* problem_ = nullptr;
   std::vector<Region> regions_;

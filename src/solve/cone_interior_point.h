@@ -9,8 +9,8 @@
 // |w_t| is in the step's matrix near the solution; farther off, and where such a step gets nowhere, |w_t| is held at
 // what it is, which is slower and fails less often. Where neither leads to the law, each is tried alone.
 //
-// A load that redundant contacts share is spread over all of them, where alternating and sweeping pass it on and on: 20
-// to 60 steps, each a factorisation, whatever the number of contacts.
+// A load that redundant contacts share is spread over all of them in a few dozen factorisations, where alternating and
+// sweeping pass it on and on.
 
 #include "solve/coulomb_law.h"
 

@@ -40,7 +40,6 @@ class ClosestToLaw {
   // Returns whether that is close enough; the candidate's residual in any case.
   bool offer(const Eigen::VectorXd& candidate, double* its_residual = nullptr);
 
-  double goal() const { return goal_; }
   bool arrived() const { return residual_ <= goal_; }
   const Eigen::VectorXd& impulses() const { return r_; }
   double residual() const { return residual_; }
