@@ -225,7 +225,7 @@ void PackedSystem::residualOfBodies(const BorderedVector& rhs, const SplitVector
 
 void PackedSystem::precondition(const std::vector<float>& from, std::vector<float>& to) {
   const float flux_scale = 1.0f / static_cast<float>(flux_weight_);
-  if (together_.regions() == 0) {
+  if (together_.drifts() == 0) {
     preconditioner_.apply(from.data(), flux_scale, to.data());
     preconditionBodies(from, to);
     return;

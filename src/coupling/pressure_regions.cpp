@@ -187,6 +187,48 @@ long cellsAtWalls(const Lattice& l, std::ptrdiff_t begin, std::ptrdiff_t end) {
   return (first[0] == 0 ? 1 : 0) + (first[0] + (end - begin) == l.n[0] ? 1 : 0);
 }
 
+void findDrifts(const Lattice& l, const BodyRows& rows, const std::vector<char>& moves, const Runs& runs,
+                const std::vector<int>& id_of, std::vector<PressureRegion>& regions) {
+  // Regions, and behind them free bodies, by what they are joined to.
+  const std::size_t count = regions.size();
+  std::vector<std::size_t> joined(count + moves.size());
+  std::iota(joined.begin(), joined.end(), 0);
+  const auto root = [&](std::size_t i) {
+    while (joined[i] != i) i = joined[i] = joined[joined[i]];
+    return i;
+  };
+  std::vector<long> cells(joined.size(), 0), held(joined.size(), 0);
+  for (const BodyRow& row : rows.divergence) {
+    const int run = runs.of(row.sample);
+    if (run < 0) continue;
+    if (moves[row.body]) {
+      joined[root(count + row.body)] = root(id_of[run]);
+    } else {
+      ++held[id_of[run]];
+    }
+  }
+  runs.forEachRun([&](int run, std::ptrdiff_t begin, std::ptrdiff_t end) {
+    cells[id_of[run]] += static_cast<long>(end - begin);
+    held[id_of[run]] += cellsAtWalls(l, begin, end);
+  });
+  for (std::size_t id = 0; id < count; ++id) {
+    const std::size_t to = root(id);
+    if (to == id) continue;
+    cells[to] += cells[id];
+    held[to] += held[id];
+  }
+  std::vector<int> drift(joined.size(), -1);
+  int drifts = 0;
+  for (std::size_t id = 0; id < count; ++id) {
+    const std::size_t to = root(id);
+    // As much as half the base of a cube.
+    const double little = 0.5 * std::pow(static_cast<double>(cells[to]), 2.0 / 3.0);
+    if (static_cast<double>(held[to]) >= little) continue;
+    if (drift[to] < 0) drift[to] = drifts++;
+    regions[id].drift = drift[to];
+  }
+}
+
 }  // namespace
 
 std::vector<PressureRegion> findPressureRegions(const StaggeredCoefficients<double>& c, const BodyRows& rows,
@@ -204,21 +246,8 @@ std::vector<PressureRegion> findPressureRegions(const StaggeredCoefficients<doub
     id_of[run] = id_of[first];
     if (runs.openToAir(run)) regions[id_of[run]].sealed = false;
   }
-  std::vector<long> cells(regions.size(), 0), held(cells);
-  runs.forEachRun([&](int run, std::ptrdiff_t begin, std::ptrdiff_t end) {
-    cells[id_of[run]] += static_cast<long>(end - begin);
-    held[id_of[run]] += cellsAtWalls(c.lattice, begin, end);
-  });
-  for (const BodyRow& row : rows.divergence) {
-    const int run = runs.of(row.sample);
-    if (run >= 0 && !moves[row.body]) ++held[id_of[run]];
-  }
-  for (std::size_t id = 0; id < regions.size(); ++id) {
-    // As much as half the base of a cube.
-    const double little = 0.5 * std::pow(static_cast<double>(cells[id]), 2.0 / 3.0);
-    regions[id].adrift = static_cast<double>(held[id]) < little;
-  }
-  const auto wanted = [](const PressureRegion& region) { return region.sealed || region.adrift; };
+  findDrifts(c.lattice, rows, moves, runs, id_of, regions);
+  const auto wanted = [](const PressureRegion& region) { return region.sealed || region.drift >= 0; };
   if (std::any_of(regions.begin(), regions.end(), wanted)) {
     runs.forEachRun([&](int run, std::ptrdiff_t begin, std::ptrdiff_t end) {
       PressureRegion& region = regions[id_of[run]];

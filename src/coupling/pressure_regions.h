@@ -18,7 +18,9 @@ struct PressureRegion {
 
   bool sealed = false;     // no face towards the air
   bool null_mode = false;  // sealed, and no free body feels the constant: it is in the operator's null space
-  bool adrift = false;     // few of its cells are at walls or at bodies that are not free
+  // Regions that free bodies join drift together, under one number from 0 on, where few of their cells are at walls or
+  // at bodies that are not free; -1: held.
+  int drift = -1;
   std::vector<Run> runs;   // of regions that are sealed or adrift
   std::size_t cells = 0;   // in them
 

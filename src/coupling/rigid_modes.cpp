@@ -22,22 +22,25 @@ std::pair<double, double> alongRun(const Eigen::Matrix<double, 6, 1>& motion, in
 
 }  // namespace
 
-RigidModes::Region RigidModes::makeRegion(const PressureRegion& liquid, int label,
-                                          const std::vector<std::int32_t>& labels, const Eigen::VectorXd& scale) const {
+RigidModes::Drift RigidModes::makeDrift(int number, const std::vector<std::int32_t>& numbers,
+                                        const Eigen::VectorXd& scale) const {
   const StepProblem& p = *problem_;
   const Lattice& l = p.grid.lattice;
   Eigen::AlignedBox3i box;
-  for (const PressureRegion::Run& run : liquid.runs) {
-    for (const std::ptrdiff_t c : {run.begin, run.end - 1}) {
-      const std::array<int, 3> at = l.cell(c);
-      box.extend(Eigen::Vector3i(at[0], at[1], at[2]));
+  for (const PressureRegion& liquid : p.regions) {
+    if (liquid.drift != number) continue;
+    for (const PressureRegion::Run& run : liquid.runs) {
+      for (const std::ptrdiff_t c : {run.begin, run.end - 1}) {
+        const std::array<int, 3> at = l.cell(c);
+        box.extend(Eigen::Vector3i(at[0], at[1], at[2]));
+      }
     }
   }
   const Eigen::Vector3d low = p.grid.cellCenter(box.min()[0], box.min()[1], box.min()[2]);
   const Eigen::Vector3d high = p.grid.cellCenter(box.max()[0], box.max()[1], box.max()[2]);
   const Eigen::Vector3d centre = 0.5 * (low + high);
   const double size = std::max(0.5 * (high - low).norm(), p.grid.h);
-  Region out;
+  Drift out;
   out.step = p.grid.h / size;
   const auto end = [&](int axis) { return std::min(box.max()[axis] + 2, l.faceEnd(axis)); };
   for (int a = 0; a < 3; ++a) {
@@ -46,7 +49,7 @@ RigidModes::Region RigidModes::makeRegion(const PressureRegion& liquid, int labe
         bool before = false;
         for (int i = box.min()[0]; i < end(0); ++i) {
           const auto f = l.index(i, j, k);
-          const bool at_it = labels[f] == label || labels[f - l.stride[a]] == label;
+          const bool at_it = numbers[f] == number || numbers[f - l.stride[a]] == number;
           const bool here = at_it && p.coefficients.mass[a][f] > 0.0;
           if (here && !before) out.faces[a].push_back({f, f, (p.grid.faceCenter(a, i, j, k) - centre) / size});
           if (here) out.faces[a].back().end = f + 1;
@@ -57,7 +60,7 @@ RigidModes::Region RigidModes::makeRegion(const PressureRegion& liquid, int labe
   }
   std::vector<char> in_it(p.bodies->size(), 0);
   for (const BodyRow& row : p.rows.divergence) {
-    if (labels[row.sample] == label) in_it[row.body] = 1;
+    if (numbers[row.sample] == number) in_it[row.body] = 1;
   }
   for (std::size_t i = 0; i < p.free.size(); ++i) {
     if (!in_it[p.free[i]]) continue;
@@ -73,11 +76,11 @@ RigidModes::Region RigidModes::makeRegion(const PressureRegion& liquid, int labe
 }
 
 template <class Real>
-RigidModes::Amplitudes RigidModes::project(const Region& region, const std::vector<Real>& r) const {
+RigidModes::Amplitudes RigidModes::project(const Drift& drift, const std::vector<Real>& r) const {
   const std::size_t size = problem_->grid.lattice.size;
   Amplitudes out = Amplitudes::Zero();
   for (int a = 0; a < 3; ++a) {
-    const std::vector<Run>& runs = region.faces[a];
+    const std::vector<Run>& runs = drift.faces[a];
     const Real* field = r.data() + a * size;
     std::vector<std::pair<double, double>> sums(runs.size());  // and of the moments along x
 #pragma omp parallel for schedule(static) if (runs.size() >= kRunsWorthSharing)
@@ -90,7 +93,7 @@ RigidModes::Amplitudes RigidModes::project(const Region& region, const std::vect
         sum += from[i];
         moment += static_cast<Real>(i) * from[i];
       }
-      sums[n] = {sum, region.step * static_cast<double>(moment)};
+      sums[n] = {sum, drift.step * static_cast<double>(moment)};
     }
     const Eigen::Vector3d axis = Eigen::Vector3d::Unit(a);
     for (std::size_t n = 0; n < runs.size(); ++n) {
@@ -100,7 +103,7 @@ RigidModes::Amplitudes RigidModes::project(const Region& region, const std::vect
           runs[n].first.cross(axis) * sums[n].first + Eigen::Vector3d::UnitX().cross(axis) * sums[n].second;
     }
   }
-  for (const auto& [first, unknowns] : region.bodies) {
+  for (const auto& [first, unknowns] : drift.bodies) {
     const auto force = Eigen::Map<const Eigen::Matrix<Real, 6, 1>>(r.data() + 4 * size + first);
     out += unknowns.transpose() * force.template cast<double>();
   }
@@ -108,43 +111,42 @@ RigidModes::Amplitudes RigidModes::project(const Region& region, const std::vect
 }
 
 template <class Real>
-void RigidModes::add(const Region& region, const Amplitudes& amplitudes, std::vector<Real>& z) const {
+void RigidModes::add(const Drift& drift, const Amplitudes& amplitudes, std::vector<Real>& z) const {
   const std::size_t size = problem_->grid.lattice.size;
   for (int a = 0; a < 3; ++a) {
-    const std::vector<Run>& runs = region.faces[a];
+    const std::vector<Run>& runs = drift.faces[a];
     Real* field = z.data() + a * size;
 #pragma omp parallel for schedule(static) if (runs.size() >= kRunsWorthSharing)
     for (std::size_t n = 0; n < runs.size(); ++n) {
       const auto [at_first, slope] = alongRun(amplitudes, a, runs[n].first);
-      const auto constant = static_cast<Real>(at_first), change = static_cast<Real>(slope * region.step);
+      const auto constant = static_cast<Real>(at_first), change = static_cast<Real>(slope * drift.step);
       Real* to = field + runs[n].begin;
       const auto count = static_cast<int>(runs[n].end - runs[n].begin);
 #pragma omp simd
       for (int i = 0; i < count; ++i) to[i] += constant + change * static_cast<Real>(i);
     }
   }
-  for (const auto& [first, unknowns] : region.bodies) {
+  for (const auto& [first, unknowns] : drift.bodies) {
     Eigen::Map<Eigen::Matrix<Real, 6, 1>>(z.data() + 4 * size + first) += (unknowns * amplitudes).template cast<Real>();
   }
 }
 
-void RigidModes::findEnergies(const std::vector<Region*>& regions, const Apply& apply, std::vector<double>& x,
-                              std::vector<double>& y) const {
-  if (regions.empty()) return;
+void RigidModes::findEnergies(const Apply& apply, std::size_t size) {
   const Lattice& l = problem_->grid.lattice;
-  std::vector<Matrix6d> energy(regions.size());
+  std::vector<double> x(size), y(size);
+  std::vector<Matrix6d> energy(drifts_.size());
   for (int q = 0; q < 6; ++q) {
     std::fill(x.begin(), x.end(), 0.0);
-    for (const Region* region : regions) add(*region, Amplitudes::Unit(q), x);
+    for (const Drift& drift : drifts_) add(drift, Amplitudes::Unit(q), x);
     apply(x, y);
-    for (std::size_t i = 0; i < regions.size(); ++i) energy[i].col(q) = project(*regions[i], y);
+    for (std::size_t i = 0; i < drifts_.size(); ++i) energy[i].col(q) = project(drifts_[i], y);
   }
   // Around a periodic axis nothing turns.
   std::vector<int> used = {0, 1, 2};
   for (int q = 0; q < 3; ++q) {
     if (!l.periodic[(q + 1) % 3] && !l.periodic[(q + 2) % 3]) used.push_back(3 + q);
   }
-  for (std::size_t i = 0; i < regions.size(); ++i) {
+  for (std::size_t i = 0; i < drifts_.size(); ++i) {
     Eigen::MatrixXd part = energy[i](used, used);
     part = (0.5 * (part + part.transpose())).eval();
     part.diagonal().array() += kRoundOff * part.diagonal().maxCoeff();
@@ -152,48 +154,37 @@ void RigidModes::findEnergies(const std::vector<Region*>& regions, const Apply& 
     if (factor.info() != Eigen::Success) continue;  // no correction
     const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(part.rows(), part.cols());
     const Eigen::MatrixXd inverse = factor.solve(identity);
-    regions[i]->inverse(used, used) = inverse;
+    drifts_[i].inverse(used, used) = inverse;
   }
 }
 
 void RigidModes::set(const StepProblem& problem, const Eigen::VectorXd& scale, const Apply& apply) {
   problem_ = &problem;
-  regions_.clear();
-  const auto isAdrift = [](const PressureRegion& region) { return region.adrift; };
-  const auto& liquid = problem.regions;
-  if (problem.viscous_number < kLeastNumber || std::none_of(liquid.begin(), liquid.end(), isAdrift)) return;
+  drifts_.clear();
+  int count = 0;
+  for (const PressureRegion& liquid : problem.regions) count = std::max(count, liquid.drift + 1);
+  if (problem.viscous_number < kLeastNumber || count == 0) return;
   const Lattice& l = problem.grid.lattice;
-  std::vector<std::int32_t> labels(l.size, -1);
-  for (std::size_t id = 0; id < liquid.size(); ++id) {
-    if (!liquid[id].adrift) continue;
-    for (const PressureRegion::Run& run : liquid[id].runs) {
-      std::fill(labels.begin() + run.begin, labels.begin() + run.end, static_cast<std::int32_t>(id));
+  std::vector<std::int32_t> numbers(l.size, -1);
+  for (const PressureRegion& liquid : problem.regions) {
+    if (liquid.drift < 0) continue;
+    for (const PressureRegion::Run& run : liquid.runs) {
+      std::fill(numbers.begin() + run.begin, numbers.begin() + run.end, liquid.drift);
     }
   }
-  fillHalo(l, labels);
-  for (std::size_t id = 0; id < liquid.size(); ++id) {
-    if (liquid[id].adrift) regions_.push_back(makeRegion(liquid[id], static_cast<int>(id), labels, scale));
-  }
-  std::vector<double> x(4 * l.size + static_cast<std::size_t>(scale.size())), y(x.size());
-  std::vector<Region*> alone;  // all at once
-  for (Region& region : regions_) {
-    if (region.bodies.empty()) {
-      alone.push_back(&region);
-    } else {
-      findEnergies({&region}, apply, x, y);
-    }
-  }
-  findEnergies(alone, apply, x, y);
+  fillHalo(l, numbers);
+  for (int number = 0; number < count; ++number) drifts_.push_back(makeDrift(number, numbers, scale));
+  findEnergies(apply, 4 * l.size + static_cast<std::size_t>(scale.size()));
 }
 
 void RigidModes::correct(const std::vector<float>& r, std::vector<float>& z) const {
-  for (const Region& region : regions_) {
+  for (const Drift& drift : drifts_) {
     std::size_t faces = 0;
-    for (const auto& runs : region.faces) {
+    for (const auto& runs : drift.faces) {
       for (const Run& run : runs) faces += static_cast<std::size_t>(run.end - run.begin);
     }
     countWork(faces, 6.0, 3.0 * sizeof(float));
-    add(region, region.inverse * project(region, r), z);
+    add(drift, drift.inverse * project(drift, r), z);
   }
 }
 

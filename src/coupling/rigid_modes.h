@@ -1,13 +1,12 @@
 #pragma once
 // The motion of liquid and bodies together, as one rigid body, for the preconditioner of `fast`: liquid that no wall
 // holds, and bodies in it, resist each other by the viscous number, their common motion by their mass alone. What one
-// multigrid cycle leaves of the former is many times the latter, and the solve crawls (the first 10 steps of a falling
-// blob around a box, viscous number 2500: 636 iterations each and many failures, 62 where it is added to the cycle, 37
-// where it comes first).
+// multigrid cycle leaves of the former is many times the latter, and the solve crawls (`./tank cases hard`, a blob of
+// 1e5 Pa.s around a box and two of 1e4: 18 and 40 iterations a step without this, 9 and 21 with it).
 //
-// A coarse level of six unknowns for each region of liquid that is adrift:
-//   z = R (R^T A R)^-1 R^T r,   R: rigid velocities of the region's faces and of the free bodies in it
-// R^T A R is taken region by region; a body in two of them counts in both.
+// A coarse level of six unknowns for all that drifts together (pressure_regions.h):
+//   z = R (R^T A R)^-1 R^T r,   R: rigid velocities of the faces of its liquid and of the free bodies in that
+// No body is in two, so R^T A R is a block for each.
 
 #include <Eigen/Dense>
 #include <array>
@@ -31,15 +30,15 @@ class RigidModes {
   // z += R (R^T A R)^-1 R^T r, packed likewise; they may be longer.
   void correct(const std::vector<float>& r, std::vector<float>& z) const;
 
-  int regions() const { return static_cast<int>(regions_.size()); }
+  int drifts() const { return static_cast<int>(drifts_.size()); }
 
  private:
-  // Faces with an unknown next to each other along x; offsets from the region's centre, in its size.
+  // Faces with an unknown next to each other along x; offsets from the drift's centre, in its size.
   struct Run {
     std::ptrdiff_t begin, end;
     Eigen::Vector3d first;  // of the first face
   };
-  struct Region {
+  struct Drift {
     std::array<std::vector<Run>, 3> faces;
     std::vector<std::pair<Eigen::Index, Matrix6d>> bodies;  // first unknown; from amplitudes to unknowns
     double step = 0.0;                                      // between faces
@@ -47,21 +46,17 @@ class RigidModes {
   };
   using Amplitudes = Vector6d;  // velocity of the centre, then rotation
 
-  // labels: of the cells of all regions that are adrift; this one's is `label`.
-  Region makeRegion(const PressureRegion& liquid, int label, const std::vector<std::int32_t>& labels,
-                    const Eigen::VectorXd& scale) const;
-  // R^T r and z += R a, of one region.
+  // numbers: of the drifts, at their cells.
+  Drift makeDrift(int number, const std::vector<std::int32_t>& numbers, const Eigen::VectorXd& scale) const;
+  // R^T r and z += R a, of one drift.
   template <class Real>
-  Amplitudes project(const Region& region, const std::vector<Real>& r) const;
+  Amplitudes project(const Drift& drift, const std::vector<Real>& r) const;
   template <class Real>
-  void add(const Region& region, const Amplitudes& a, std::vector<Real>& z) const;
-  // R^T A R of these regions, which no body joins.
-  // x, y: work space.
-  void findEnergies(const std::vector<Region*>& regions, const Apply& apply, std::vector<double>& x,
-                    std::vector<double>& y) const;
+  void add(const Drift& drift, const Amplitudes& a, std::vector<Real>& z) const;
+  void findEnergies(const Apply& apply, std::size_t size);
 
   const StepProblem* problem_ = nullptr;
-  std::vector<Region> regions_;
+  std::vector<Drift> drifts_;
 };
 
 }  // namespace monolith
