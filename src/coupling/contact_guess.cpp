@@ -26,7 +26,16 @@ constexpr double kLeastSpeed = 1e-10;  // m/s
 
 ContactGuess::ContactGuess(const ContactRows& rows, Eigen::VectorXd& impulses, double tolerance)
     : rows_(rows), r_(impulses), tolerance_(tolerance), states_(openStates(rows)) {
-  if (r_.size() != 3 * rows.count()) r_ = Eigen::VectorXd::Zero(3 * rows.count());
+  const Eigen::Index m = rows.count();
+  if (r_.size() != 3 * m) r_ = Eigen::VectorXd::Zero(3 * m);
+  bodies_.contacts.resize(m);
+  for (Eigen::Index c = 0; c < m; ++c) {
+    for (Eigen::Index first = 0; first < rows.J.cols(); first += 6) {
+      Eigen::Matrix<double, 3, 6> J;
+      J << rows.J.block<1, 6>(c, first), rows.J.block<2, 6>(m + 2 * c, first);
+      if (!J.isZero(0.0)) bodies_.contacts[c].of.emplace_back(first, J);
+    }
+  }
 }
 
 double ContactGuess::settledAt(double tolerance) { return kLawFactor * tolerance; }
@@ -37,8 +46,28 @@ double ContactGuess::closeness(bool rough) const {
 }
 
 void ContactGuess::setResponse(const Eigen::MatrixXd& K) {
-  K_ = K;
-  D_ = contactResponse(rows_, K_, compliance_);
+  bodies_.K = K;
+  const Eigen::LLT<Eigen::MatrixXd> factor(K);
+  bodies_.K_inverse.resize(0, 0);
+  if (factor.info() == Eigen::Success) {
+    bodies_.K_inverse = factor.solve(Eigen::MatrixXd::Identity(K.rows(), K.cols()));
+  }
+  Eigen::VectorXd compliance;
+  D_ = contactResponse(rows_, K, compliance);
+  setCompliance(compliance);
+}
+
+void ContactGuess::setCompliance(const Eigen::VectorXd& compliance) {
+  const Eigen::Index m = rows_.count();
+  compliance_ = compliance;
+  for (Eigen::Index c = 0; c < m; ++c) {
+    bodies_.contacts[c].compliance << compliance_[c], compliance_.segment<2>(m + 2 * c);
+  }
+}
+
+FrictionReport ContactGuess::solveLaw(const Eigen::VectorXd& w0, bool rough, Eigen::VectorXd& r) const {
+  const BodyResponse* bodies = bodies_.K_inverse.size() > 0 ? &bodies_ : nullptr;
+  return solveFrictionalContact({D_, w0, rows_.friction, bodies}, closeness(rough), r);
 }
 
 void ContactGuess::setOpen() {
@@ -48,7 +77,7 @@ void ContactGuess::setOpen() {
 
 void ContactGuess::startFrom(const Eigen::VectorXd& twists, bool rough, CoupledReport& report) {
   const Eigen::VectorXd w0 = velocities(twists);
-  const FrictionReport friction = solveFrictionalContact({D_, w0, rows_.friction}, closeness(rough), r_);
+  const FrictionReport friction = solveLaw(w0, rough, r_);
   report.friction_iterations += friction.iterations;
   states_ = contactStates(rows_, D_, D_ * r_ + w0, r_);
 }
@@ -68,16 +97,16 @@ void ContactGuess::learnFrom(const Eigen::VectorXd& twists, double error) {
 // Symmetric rank-one update of K so that it gives the change of twists dv that impulses dg were seen to make; left
 // alone where that would cost its definiteness.
 void ContactGuess::update(const Eigen::VectorXd& dg, const Eigen::VectorXd& dv) {
-  const Eigen::VectorXd miss = dv - K_ * dg;
+  const Eigen::VectorXd miss = dv - bodies_.K * dg;
   const double curvature = miss.dot(dg);
   if (!(std::abs(curvature) > kLeastCurvature * miss.norm() * dg.norm())) return;
-  const Eigen::MatrixXd next = K_ + miss * miss.transpose() / curvature;
+  const Eigen::MatrixXd next = bodies_.K + miss * miss.transpose() / curvature;
   if (curvature < 0.0 && Eigen::LLT<Eigen::MatrixXd>(next).info() != Eigen::Success) return;
   // The solution was made with the compliance that the rows had.
   const Eigen::VectorXd compliance = compliance_;
   setResponse(next);
   D_.diagonal() += compliance - compliance_;
-  compliance_ = compliance;
+  setCompliance(compliance);
 }
 
 ContactGuess::Change ContactGuess::proceedFrom(const Eigen::VectorXd& twists, bool rough, CoupledReport& report) {
@@ -85,7 +114,7 @@ ContactGuess::Change ContactGuess::proceedFrom(const Eigen::VectorXd& twists, bo
   // Shifted so that the small system reproduces this solution exactly.
   const Eigen::VectorXd w0 = w - D_ * r_ + compliance_.cwiseProduct(r_);
   Eigen::VectorXd next = r_;
-  const FrictionReport friction = solveFrictionalContact({D_, w0, rows_.friction}, closeness(rough), next);
+  const FrictionReport friction = solveLaw(w0, rough, next);
   report.friction_iterations += friction.iterations;
   report.contact_residual = friction.residual;
   const double change = (D_ * (next - r_)).cwiseAbs().maxCoeff();

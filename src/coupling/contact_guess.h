@@ -7,6 +7,7 @@
 
 #include "coupling/contact_states.h"
 #include "coupling/step_solver.h"
+#include "solve/frictional_contact.h"
 
 namespace monolith {
 
@@ -44,11 +45,15 @@ class ContactGuess {
   Eigen::VectorXd velocities(const Eigen::VectorXd& twists) const { return rows_.J * twists + rows_.bias; }
   double closeness(bool rough) const;
   void update(const Eigen::VectorXd& dg, const Eigen::VectorXd& dv);
+  void setCompliance(const Eigen::VectorXd& compliance);  // what D has
+  // Their law, solved from r on.
+  FrictionReport solveLaw(const Eigen::VectorXd& w0, bool rough, Eigen::VectorXd& r) const;
 
   const ContactRows& rows_;
   Eigen::VectorXd& r_;
   double tolerance_;
-  Eigen::MatrixXd K_, D_;
+  BodyResponse bodies_;  // without an inverse where K has none
+  Eigen::MatrixXd D_;
   Eigen::VectorXd compliance_;
   ContactStates states_;
   Eigen::VectorXd last_push_, last_twists_;

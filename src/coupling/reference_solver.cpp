@@ -207,8 +207,9 @@ CoupledReport ReferenceSolver::Impl::minimiseFriction(const StepVector& rhs, con
   const Eigen::Index m = contacts.count();
   Eigen::VectorXd compliance;
   const Eigen::MatrixXd D = contactResponse(contacts, response, compliance).bottomRightCorner(2 * m, 2 * m);
+  const DiscQp qp(D);
   const auto small = [&](const Eigen::VectorXd& w, Eigen::VectorXd& next) {
-    return solveDiscQp(D, w - D * next, radius, kSmallTolerance, kMaximumSweeps, next).solved;
+    return qp.solve(w - D * next, radius, kSmallTolerance, kMaximumSweeps, next).solved;
   };
   return settle(rhs, body_forces, contacts.J.bottomRows(2 * m), contacts.bias.tail(2 * m), compliance.tail(2 * m),
                 small, options, unknowns, f, x);

@@ -1,8 +1,11 @@
 #include "solve/cone_interior_point.h"
 
 #include <cmath>
+#include <numeric>
+#include <utility>
 #include <vector>
 
+#include "solve/contact_system.h"
 #include "solve/coulomb_newton.h"
 
 namespace monolith {
@@ -87,21 +90,24 @@ struct Scaling {
 class InteriorPoint {
  public:
   InteriorPoint(const FrictionProblem& problem, double near)
-      : m_(problem.count()), near_(near), speed_(std::max(problem.w0.cwiseAbs().maxCoeff(), 1e-300)) {
+      : problem_(problem),
+        m_(problem.count()),
+        near_(near),
+        speed_(std::max(problem.w0.cwiseAbs().maxCoeff(), 1e-300)) {
     const Eigen::Index n = 3 * m_;
     place_.resize(n);
     unit_.resize(n);
     // Without friction x is lambda alone: the other two stay zero.
     for (Eigen::Index c = 0; c < m_; ++c) {
       const double mu = problem.mu[c];
-      place_[3 * c] = c;
+      for (int d = 0; d < 3; ++d) place_[3 * c + d] = problem.entry(c, d);
       unit_[3 * c] = mu > 0.0 ? 1.0 / mu : 1.0;
-      for (int d = 1; d < 3; ++d) {
-        place_[3 * c + d] = m_ + 2 * c + d - 1;
-        unit_[3 * c + d] = mu > 0.0 ? 1.0 : 0.0;
-      }
+      unit_.segment<2>(3 * c + 1).setConstant(mu > 0.0 ? 1.0 : 0.0);
     }
     A_ = unit_.asDiagonal() * problem.D(place_, place_) * unit_.asDiagonal();
+    all_.resize(m_);
+    std::iota(all_.begin(), all_.end(), 0);
+    nonzero_ = (unit_.array() > 0.0).select(unit_, 1.0);
     q_ = unit_.cwiseProduct(problem.w0(place_));
     x_ = z_ = VectorXd::Zero(n);
     for (Eigen::Index c = 0; c < m_; ++c) {
@@ -143,15 +149,32 @@ class InteriorPoint {
     return t;
   }
 
+  // (A + N) x = b with N of 3 x 3 blocks, by the impulses: D r + unit^-1 N unit^-1 r = unit^-1 b. Entries without a
+  // unit have no part in A.
+  ContactSystem system(const std::vector<Matrix3d>& N) const;
+  VectorXd perUnit(const VectorXd& x) const { return x.cwiseQuotient(nonzero_); }
+
+  const FrictionProblem& problem_;
   Eigen::Index m_;
   double near_, speed_;
   std::vector<Eigen::Index> place_;  // in r
-  VectorXd unit_;                    // r = unit x
+  std::vector<Eigen::Index> all_;    // contacts
+  VectorXd unit_, nonzero_;          // r = unit x; 1 where that is 0
   Eigen::MatrixXd A_;
   VectorXd q_, x_, z_;
   double last_ = 1.0;     // length of the last step
   bool coupled_ = false;  // whether |w_t| was differentiated in it
 };
+
+ContactSystem InteriorPoint::system(const std::vector<Matrix3d>& N) const {
+  std::vector<Matrix3d> turn, own;
+  for (Eigen::Index c = 0; c < m_; ++c) {
+    const Vector3d inverse = nonzero_.segment<3>(3 * c).cwiseInverse();
+    turn.emplace_back(unit_.segment<3>(3 * c).cwiseProduct(inverse).asDiagonal());
+    own.emplace_back(inverse.asDiagonal() * N[c] * inverse.asDiagonal());
+  }
+  return {problem_, all_, std::move(turn), std::move(own)};
+}
 
 bool InteriorPoint::step() {
   VectorXd residual = A_ * x_ + q_ - z_;
@@ -161,16 +184,14 @@ bool InteriorPoint::step() {
 
   std::vector<Scaling> scaling;
   VectorXd scaled(3 * m_);
-  Eigen::MatrixXd K = A_;
+  std::vector<Matrix3d> own;
   for (Eigen::Index c = 0; c < m_; ++c) {
     scaling.emplace_back(x(c), z(c));
     scaled.segment<3>(3 * c) = scaling[c].W * z(c);
     const Matrix3d square = scaling[c].inverse * scaling[c].inverse;
-    K.block<3, 3>(3 * c, 3 * c) += coupled_ ? Matrix3d(square - slipDerivative(c) * square) : square;
+    own.push_back(coupled_ ? Matrix3d(square - slipDerivative(c) * square) : square);
   }
-  Eigen::LDLT<Eigen::MatrixXd> symmetric;
-  Eigen::PartialPivLU<Eigen::MatrixXd> general;
-  coupled_ ? static_cast<void>(general.compute(K)) : static_cast<void>(symmetric.compute(K));
+  const ContactSystem steps = system(own);
 
   const auto direction = [&](const VectorXd& b) {
     VectorXd h(3 * m_), right = -residual;
@@ -180,7 +201,7 @@ bool InteriorPoint::step() {
       right.segment<3>(3 * c) += coupled_ ? Vector3d(part - slipDerivative(c) * part) : part;
     }
     Direction d;
-    d.x = coupled_ ? VectorXd(general.solve(right)) : VectorXd(symmetric.solve(right));
+    d.x = perUnit(steps.solve(perUnit(right)));
     d.z = h;
     for (Eigen::Index c = 0; c < m_; ++c) {
       d.z.segment<3>(3 * c) -= scaling[c].inverse * (scaling[c].inverse * d.x.segment<3>(3 * c));

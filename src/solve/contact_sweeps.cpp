@@ -53,7 +53,8 @@ Eigen::Vector3d solveOneContact(const Eigen::Matrix3d& B, const Eigen::Vector3d&
 }  // namespace
 
 int sweepContacts(const FrictionProblem& problem, Eigen::VectorXd r, ClosestToLaw& closest) {
-  const auto& [D, w0, mu] = problem;
+  const Eigen::MatrixXd& D = problem.D;
+  const Eigen::VectorXd &w0 = problem.w0, &mu = problem.mu;
   const Eigen::Index m = problem.count();
   Eigen::VectorXd w = D * r + w0;
   int sweeps = 0;

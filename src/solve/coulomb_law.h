@@ -10,15 +10,41 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <limits>
+#include <utility>
+#include <vector>
 
 namespace monolith {
+
+// What the contacts' response is made of, D = J K J^T + C: the bodies' own to impulses, K, and the contacts'
+// compliance.
+struct BodyResponse {
+  struct Contact {
+    // Its rows of J, the normal's first, for each of the bodies that it moves; with that body's first unknown.
+    std::vector<std::pair<Eigen::Index, Eigen::Matrix<double, 3, 6>>> of;
+    Eigen::Vector3d compliance;
+
+    Eigen::Vector3d velocity(const Eigen::VectorXd& twists) const {
+      Eigen::Vector3d out = Eigen::Vector3d::Zero();
+      for (const auto& [first, J] : of) out += J * twists.segment<6>(first);
+      return out;
+    }
+    void push(const Eigen::Vector3d& impulse, Eigen::VectorXd& bodies) const {
+      for (const auto& [first, J] : of) bodies.segment<6>(first) += J.transpose() * impulse;
+    }
+  };
+  std::vector<Contact> contacts;
+  Eigen::MatrixXd K, K_inverse;
+};
 
 struct FrictionProblem {
   const Eigen::MatrixXd& D;   // 3m x 3m
   const Eigen::VectorXd& w0;  // 3m, m/s
   const Eigen::VectorXd& mu;  // m
+  const BodyResponse* bodies = nullptr;  // of which D is made, if that is known: solutions are the same, but sooner
 
   Eigen::Index count() const { return mu.size(); }
+  // In r, of the normal (0) or a tangent (1, 2) of a contact.
+  Eigen::Index entry(Eigen::Index c, int d) const { return d == 0 ? c : count() + 2 * c + d - 1; }
   // Steps of the projection below, inverse to the contact's own response.
   double normalStep(Eigen::Index c) const { return 1.0 / D(c, c); }
   double tangentStep(Eigen::Index c) const {

@@ -1,17 +1,22 @@
 #include "solve/coulomb_newton.h"
 
+#include <utility>
 #include <vector>
+
+#include "solve/contact_system.h"
 
 namespace monolith {
 namespace {
 
-constexpr int kMaximumSteps = 12;
-constexpr int kPatience = 4;  // steps that come no closer
+constexpr int kMaximumSteps = 20;
+// Steps that come no closer: before it arrives it may be far off for many.
+constexpr int kPatience = 10;
 
 }  // namespace
 
 int polishByNewton(const FrictionProblem& problem, const Eigen::VectorXd& r, ClosestToLaw& closest) {
-  const auto& [D, w0, mu] = problem;
+  const Eigen::MatrixXd& D = problem.D;
+  const Eigen::VectorXd &w0 = problem.w0, &mu = problem.mu;
   const Eigen::Index m = problem.count();
   Eigen::VectorXd x = r;
   double least = coulombResidual(problem, r);
@@ -24,35 +29,36 @@ int polishByNewton(const FrictionProblem& problem, const Eigen::VectorXd& r, Clo
     for (Eigen::Index c = 0; c < m; ++c) {
       if (x[c] - problem.normalStep(c) * w[c] > 0.0) pressing.push_back(c);
     }
-    const auto k = static_cast<Eigen::Index>(pressing.size());
-    std::vector<Eigen::Index> entry(3 * k);
-    for (Eigen::Index i = 0; i < k; ++i) {
-      entry[i] = pressing[i];
-      for (int d = 0; d < 2; ++d) entry[k + 2 * i + d] = m + 2 * pressing[i] + d;
+    Eigen::VectorXd change = -x;
+    for (const Eigen::Index c : pressing) {
+      for (int d = 0; d < 3; ++d) change[problem.entry(c, d)] = 0.0;
     }
-    Eigen::VectorXd change = -x, moved = w;
-    for (const Eigen::Index e : entry) change[e] = 0.0;
-    moved += D * change;
-    Eigen::MatrixXd A = D(entry, entry);
-    Eigen::VectorXd residual = moved(entry);
-    for (Eigen::Index i = 0; i < k; ++i) {
-      const Eigen::Index c = pressing[i], t = k + 2 * i;
+    const Eigen::VectorXd moved = w + D * change;
+    std::vector<Eigen::Matrix3d> turns(pressing.size(), Eigen::Matrix3d::Identity());
+    std::vector<Eigen::Matrix3d> own(pressing.size(), Eigen::Matrix3d::Zero());
+    Eigen::VectorXd residual(3 * static_cast<Eigen::Index>(pressing.size()));
+    for (std::size_t i = 0; i < pressing.size(); ++i) {
+      const Eigen::Index c = pressing[i];
+      auto here = residual.segment<3>(static_cast<Eigen::Index>(3 * i));
+      here << moved[c], moved.segment<2>(m + 2 * c);
       const double step = problem.tangentStep(c);
       const Eigen::Vector2d f = x.segment<2>(m + 2 * c), trial = f - step * w.segment<2>(m + 2 * c);
       const double length = trial.norm(), radius = mu[c] * std::max(x[c], 0.0);
       if (length <= radius) continue;
       const Eigen::Vector2d along = trial / length;
       const Eigen::Matrix2d turn = radius / length * (Eigen::Matrix2d::Identity() - along * along.transpose());
+      turns[i].bottomRightCorner<2, 2>() = turn;
+      own[i].bottomRightCorner<2, 2>() = (Eigen::Matrix2d::Identity() - turn) / step;
+      own[i].bottomLeftCorner<2, 1>() = -mu[c] / step * along;
       const Eigen::Vector2d trial_then = f - step * moved.segment<2>(m + 2 * c);
-      A.middleRows<2>(t) = (turn * A.middleRows<2>(t)).eval();
-      A.block<2, 2>(t, t) += (Eigen::Matrix2d::Identity() - turn) / step;
-      A.block<2, 1>(t, i) -= mu[c] / step * along;
-      residual.segment<2>(t) = (f - radius * along - turn * (trial_then - trial)) / step;
+      here.tail<2>() = (f - radius * along - turn * (trial_then - trial)) / step;
     }
-    const Eigen::VectorXd d = A.partialPivLu().solve(residual);
+    const Eigen::VectorXd d = ContactSystem(problem, pressing, std::move(turns), std::move(own)).solve(residual);
     if (!d.allFinite()) break;
     x += change;
-    for (Eigen::Index i = 0; i < 3 * k; ++i) x[entry[i]] -= d[i];
+    for (std::size_t i = 0; i < pressing.size(); ++i) {
+      for (int e = 0; e < 3; ++e) x[problem.entry(pressing[i], e)] -= d[static_cast<Eigen::Index>(3 * i) + e];
+    }
     // Inside the cones, as the law's residual wants them.
     Eigen::VectorXd inside = x;
     for (Eigen::Index c = 0; c < m; ++c) {

@@ -3,18 +3,24 @@
 #include <cmath>
 
 namespace monolith {
-Eigen::Vector2d minimiseOverDisc(const Eigen::Matrix2d& B, const Eigen::Vector2d& g, double radius) {
+
+DiscMinimiser::DiscMinimiser(const Eigen::Matrix2d& B) {
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen;
+  eigen.computeDirect(B);
+  vectors_ = eigen.eigenvectors();
+  values_ = eigen.eigenvalues().cwiseMax(0.0);
+}
+
+Eigen::Vector2d DiscMinimiser::minimise(const Eigen::Vector2d& g, double radius) const {
   if (!(radius > 0.0)) return Eigen::Vector2d::Zero();
-  const Eigen::Vector2d inside = -B.ldlt().solve(g);
-  if (inside.allFinite() && inside.norm() <= radius) return inside;
+  const Eigen::Vector2d b = vectors_.transpose() * -g;
+  const Eigen::Vector2d inside = b.cwiseQuotient(values_);
+  if (inside.allFinite() && inside.norm() <= radius) return vectors_ * inside;
   // (B + m I) x = -g with |x| = radius, m >= 0: Newton on 1/|x| - 1/radius, which is nearly linear in m.
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(B);
-  const Eigen::Vector2d b = eigen.eigenvectors().transpose() * -g;
-  const Eigen::Vector2d e = eigen.eigenvalues().cwiseMax(0.0);
-  double m = std::max(0.0, b.norm() / radius - e[1]);
+  double m = std::max(0.0, b.norm() / radius - values_[1]);
   Eigen::Vector2d y = Eigen::Vector2d::Zero();
   for (int it = 0; it < 60; ++it) {
-    const Eigen::Vector2d d = e.array() + m;
+    const Eigen::Vector2d d = values_.array() + m;
     y = b.cwiseQuotient(d);
     const double length = y.norm();
     if (std::abs(length - radius) <= 1e-14 * radius) break;
@@ -22,11 +28,15 @@ Eigen::Vector2d minimiseOverDisc(const Eigen::Matrix2d& B, const Eigen::Vector2d
     m = std::max(0.0, m + (length - radius) / radius * length * length / slope);
   }
   y *= radius / y.norm();
-  return eigen.eigenvectors() * y;
+  return vectors_ * y;
 }
 
-DiscQpReport solveDiscQp(const Eigen::MatrixXd& A, const Eigen::VectorXd& q, const Eigen::VectorXd& radius,
-                         double tolerance, int maximum_sweeps, Eigen::VectorXd& f) {
+DiscQp::DiscQp(const Eigen::Ref<const Eigen::MatrixXd>& A) : A_(A) {
+  for (Eigen::Index c = 0; c < A.rows() / 2; ++c) discs_.emplace_back(A.block<2, 2>(2 * c, 2 * c));
+}
+
+DiscQpReport DiscQp::solve(const Eigen::VectorXd& q, const Eigen::VectorXd& radius, double tolerance,
+                           int maximum_sweeps, Eigen::VectorXd& f) const {
   DiscQpReport report;
   const Eigen::Index count = radius.size();
   if (f.size() != 2 * count) f = Eigen::VectorXd::Zero(2 * count);
@@ -37,15 +47,16 @@ DiscQpReport solveDiscQp(const Eigen::MatrixXd& A, const Eigen::VectorXd& q, con
     return report;
   }
   const double goal = tolerance * q.cwiseAbs().maxCoeff();
-  Eigen::VectorXd w = A * f;
+  Eigen::VectorXd w = A_ * f, before(2 * count);
   while (report.sweeps < maximum_sweeps) {
     ++report.sweeps;
-    const Eigen::VectorXd before = w;
+    before = w;
     for (Eigen::Index c = 0; c < count; ++c) {
-      const Eigen::Matrix2d B = A.block<2, 2>(2 * c, 2 * c);
       const Eigen::Vector2d old = f.segment<2>(2 * c);
-      const Eigen::Vector2d next = minimiseOverDisc(B, q.segment<2>(2 * c) + w.segment<2>(2 * c) - B * old, radius[c]);
-      w += A.middleCols<2>(2 * c) * (next - old);
+      const Eigen::Vector2d by_others = w.segment<2>(2 * c) - A_.block<2, 2>(2 * c, 2 * c) * old;
+      const Eigen::Vector2d next = discs_[c].minimise(q.segment<2>(2 * c) + by_others, radius[c]);
+      if (next == old) continue;
+      w.noalias() += A_.middleCols<2>(2 * c) * (next - old);
       f.segment<2>(2 * c) = next;
     }
     if ((w - before).cwiseAbs().maxCoeff() <= goal) {

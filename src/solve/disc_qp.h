@@ -5,20 +5,38 @@
 // Block Gauss-Seidel with the exact minimiser over each disc.
 
 #include <Eigen/Dense>
+#include <vector>
 
 namespace monolith {
+
+// Minimiser of 1/2 x^T B x + g^T x over |x| <= radius, for symmetric positive definite B.
+class DiscMinimiser {
+ public:
+  explicit DiscMinimiser(const Eigen::Matrix2d& B);
+  Eigen::Vector2d minimise(const Eigen::Vector2d& g, double radius) const;
+
+ private:
+  Eigen::Matrix2d vectors_;
+  Eigen::Vector2d values_;
+};
 
 struct DiscQpReport {
   bool solved = false;
   int sweeps = 0;
 };
 
-// Minimiser of 1/2 x^T B x + g^T x over |x| <= radius, for symmetric positive definite B.
-Eigen::Vector2d minimiseOverDisc(const Eigen::Matrix2d& B, const Eigen::Vector2d& g, double radius);
+class DiscQp {
+ public:
+  // A must outlive it.
+  explicit DiscQp(const Eigen::Ref<const Eigen::MatrixXd>& A);
+  // f: start on entry, minimiser on return. Ends when a sweep changes A f (velocities) by no more than tolerance * max
+  // |q|: of redundant contacts the impulses themselves are not determined.
+  [[nodiscard]] DiscQpReport solve(const Eigen::VectorXd& q, const Eigen::VectorXd& radius, double tolerance,
+                                   int maximum_sweeps, Eigen::VectorXd& f) const;
 
-// f: start on entry, minimiser on return. Ends when a sweep changes A f (velocities) by no more than tolerance * max |q|:
-// of redundant contacts the impulses themselves are not determined.
-[[nodiscard]] DiscQpReport solveDiscQp(const Eigen::MatrixXd& A, const Eigen::VectorXd& q, const Eigen::VectorXd& radius,
-                                       double tolerance, int maximum_sweeps, Eigen::VectorXd& f);
+ private:
+  Eigen::Ref<const Eigen::MatrixXd> A_;
+  std::vector<DiscMinimiser> discs_;
+};
 
 }  // namespace monolith

@@ -2,7 +2,7 @@
 
 namespace monolith {
 
-LcpReport solveLcp(const Eigen::MatrixXd& M, const Eigen::VectorXd& q, Eigen::VectorXd& x) {
+LcpReport solveLcp(const Eigen::Ref<const Eigen::MatrixXd>& M, const Eigen::VectorXd& q, Eigen::VectorXd& x) {
   const int n = static_cast<int>(q.size());
   LcpReport report;
   report.active.assign(n, 0);

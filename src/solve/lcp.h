@@ -15,6 +15,7 @@ struct LcpReport {
   std::vector<char> active;  // x may be positive
 };
 
-[[nodiscard]] LcpReport solveLcp(const Eigen::MatrixXd& M, const Eigen::VectorXd& q, Eigen::VectorXd& x);
+[[nodiscard]] LcpReport solveLcp(const Eigen::Ref<const Eigen::MatrixXd>& M, const Eigen::VectorXd& q,
+                                 Eigen::VectorXd& x);
 
 }  // namespace monolith

@@ -17,10 +17,12 @@ constexpr double kCloser = 0.5;
 }  // namespace
 
 int alternateProjections(const FrictionProblem& problem, Eigen::VectorXd r, ClosestToLaw& closest) {
-  const auto& [D, w0, mu] = problem;
+  const Eigen::MatrixXd& D = problem.D;
+  const Eigen::VectorXd &w0 = problem.w0, &mu = problem.mu;
   const Eigen::Index m = problem.count();
   const bool frictionless = !(mu.maxCoeff() > 0.0);
   if (frictionless) r.tail(2 * m).setZero();
+  const DiscQp qp(D.bottomRightCorner(2 * m, 2 * m));
   double least = std::numeric_limits<double>::infinity();
   int iterations = 0, in_vain = 0;
   for (int it = 0; it < kMaximumAlternations && in_vain < kPatience; ++it) {
@@ -33,9 +35,8 @@ int alternateProjections(const FrictionProblem& problem, Eigen::VectorXd r, Clos
     if (!frictionless) {
       Eigen::VectorXd f = r.tail(2 * m);
       // Its residual counts, not whether these sweeps have finished.
-      static_cast<void>(solveDiscQp(D.bottomRightCorner(2 * m, 2 * m),
-                                    w0.tail(2 * m) + D.bottomLeftCorner(2 * m, m) * lambda, mu.cwiseProduct(lambda),
-                                    1e-14, kSweepsPerAlternation, f));
+      static_cast<void>(qp.solve(w0.tail(2 * m) + D.bottomLeftCorner(2 * m, m) * lambda, mu.cwiseProduct(lambda), 1e-14,
+                                 kSweepsPerAlternation, f));
       r.tail(2 * m) = f;
     }
     double residual;

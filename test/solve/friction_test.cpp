@@ -4,6 +4,7 @@
 
 #include "solve/cone_interior_point.h"
 #include "solve/contact_sweeps.h"
+#include "solve/contact_system.h"
 #include "solve/disc_qp.h"
 #include "solve/frictional_contact.h"
 #include "solve/staggered_projections.h"
@@ -32,7 +33,7 @@ TEST(DiscQp, OneDiscMeetsItsOptimality) {
     const Eigen::Matrix2d B = randomSpd(random, 2, 2, 1e-3);
     const Eigen::Vector2d g = randomVector(random, 2);
     const double radius = std::exp(randomVector(random, 1)[0]);
-    const Eigen::Vector2d x = minimiseOverDisc(B, g, radius);
+    const Eigen::Vector2d x = DiscMinimiser(B).minimise(g, radius);
     const Eigen::Vector2d gradient = B * x + g;
     ASSERT_LE(x.norm(), radius * (1.0 + 1e-12));
     if (x.norm() < radius * (1.0 - 1e-9)) {
@@ -55,7 +56,7 @@ TEST(DiscQp, NoFeasiblePointIsBetter) {
     const Eigen::VectorXd q = randomVector(random, 2 * discs);
     const Eigen::VectorXd radius = randomVector(random, discs).cwiseAbs();
     Eigen::VectorXd f;
-    ASSERT_TRUE(solveDiscQp(A, q, radius, 1e-12, 20000, f).solved);
+    ASSERT_TRUE(DiscQp(A).solve(q, radius, 1e-12, 20000, f).solved);
     const auto objective = [&](const Eigen::VectorXd& x) { return 0.5 * x.dot(A * x) + q.dot(x); };
     for (int other = 0; other < 200; ++other) {
       Eigen::VectorXd x = f + 0.1 * std::pow(10.0, -(other % 5)) * randomVector(random, 2 * discs);
@@ -140,6 +141,7 @@ TEST(FrictionalContact, RandomContactsObeyCoulombsLaw) {
 struct Heap {
   Eigen::MatrixXd D;
   Eigen::VectorXd w0, mu;
+  BodyResponse response;
 
   Heap(unsigned seed, Eigen::Index bodies, double friction) {
     std::mt19937 random(seed);
@@ -171,7 +173,19 @@ struct Heap {
       }
     }
     D = J * K * J.transpose();
-    D.diagonal().array() += 1e-10 * D.diagonal().mean();
+    const double compliance = 1e-10 * D.diagonal().mean();
+    D.diagonal().array() += compliance;
+    response.K = K;
+    response.K_inverse = K.diagonal().cwiseInverse().asDiagonal();
+    response.contacts.resize(m);
+    for (Eigen::Index c = 0; c < m; ++c) {
+      response.contacts[c].compliance.setConstant(compliance);
+      for (Eigen::Index first = 0; first < 6 * bodies; first += 6) {
+        Eigen::Matrix<double, 3, 6> rows;
+        rows << J.block<1, 6>(c, first), J.block<2, 6>(m + 2 * c, first);
+        if (!rows.isZero(0.0)) response.contacts[c].of.emplace_back(first, rows);
+      }
+    }
     w0 = J * v;
     mu = Eigen::VectorXd::Constant(m, friction);
   }
@@ -189,6 +203,10 @@ TEST(FrictionalContact, HeapsOfFortyContactsObeyCoulombsLaw) {
       EXPECT_LT(report.residual, 1e-5);
       // Each is a factorisation or so; sweeps would be a thousand.
       EXPECT_LT(report.iterations, 200);
+      Eigen::VectorXd by_bodies;
+      const FrictionProblem known{heap.D, heap.w0, heap.mu, &heap.response};
+      EXPECT_LT(solveFrictionalContact(known, 1e-6, by_bodies).residual, 1e-5);
+      expectLaw(heap.D, heap.w0, heap.mu, by_bodies, 1e-4);
       expectLaw(heap.D, heap.w0, heap.mu, r, 1e-4);
       ClosestToLaw by_turns(problem, 1e-6 * heap.w0.cwiseAbs().maxCoeff());
       alternateProjections(problem, Eigen::VectorXd::Zero(3 * problem.count()), by_turns);
@@ -201,6 +219,54 @@ TEST(FrictionalContact, HeapsOfFortyContactsObeyCoulombsLaw) {
   // Without friction it is one linear complementarity problem.
   EXPECT_GE(alternated, 10);
   EXPECT_LT(alternated, 25);
+}
+
+// Every third contact sticks, one slips and one does not take part.
+TEST(ContactSystem, ByTheBodiesIsTheSameAsByTheContacts) {
+  const Heap heap(3, 8, 0.5);
+  const FrictionProblem problem{heap.D, heap.w0, heap.mu}, known{heap.D, heap.w0, heap.mu, &heap.response};
+  std::mt19937 random(11);
+  std::vector<Eigen::Index> contacts;
+  std::vector<Eigen::Matrix3d> turn, own;
+  for (Eigen::Index c = 0; c < heap.mu.size(); ++c) {
+    if (c % 3 == 2) continue;
+    contacts.push_back(c);
+    turn.push_back(Eigen::Matrix3d::Identity());
+    own.push_back(Eigen::Matrix3d::Zero());
+    if (c % 3 == 0) continue;
+    const Eigen::Vector2d along = randomVector(random, 2).normalized();
+    const Eigen::Matrix2d across = Eigen::Matrix2d::Identity() - along * along.transpose();
+    turn.back().bottomRightCorner<2, 2>() = 0.7 * across;
+    own.back().bottomRightCorner<2, 2>() = problem.D(c, c) * (Eigen::Matrix2d::Identity() - 0.7 * across);
+    own.back().bottomLeftCorner<2, 1>() = -0.5 * problem.D(c, c) * along;
+  }
+  const auto rows = static_cast<Eigen::Index>(3 * contacts.size());
+  ASSERT_GT(rows, heap.response.K.rows());
+  const ContactSystem dense(problem, contacts, turn, own), by_bodies(known, contacts, turn, own);
+  for (int trial = 0; trial < 20; ++trial) {
+    // What some impulses of size 1 do.
+    const Eigen::VectorXd d = randomVector(random, rows);
+    Eigen::VectorXd r = Eigen::VectorXd::Zero(heap.w0.size()), b(rows);
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      for (int e = 0; e < 3; ++e) r[problem.entry(contacts[i], e)] = d[static_cast<Eigen::Index>(3 * i) + e];
+    }
+    const Eigen::VectorXd w = heap.D * r;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      const Eigen::Index c = contacts[i], at = static_cast<Eigen::Index>(3 * i);
+      const Eigen::Vector3d velocity(w[c], w[problem.entry(c, 1)], w[problem.entry(c, 2)]);
+      b.segment<3>(at) = turn[i] * velocity + own[i] * d.segment<3>(at);
+    }
+    for (const ContactSystem* system : {&dense, &by_bodies}) {
+      // Redundant contacts: velocities count.
+      const Eigen::VectorXd wrong = system->solve(b) - d;
+      Eigen::VectorXd r_wrong = Eigen::VectorXd::Zero(heap.w0.size());
+      for (std::size_t i = 0; i < contacts.size(); ++i) {
+        for (int e = 0; e < 3; ++e)
+          r_wrong[problem.entry(contacts[i], e)] = wrong[static_cast<Eigen::Index>(3 * i) + e];
+      }
+      EXPECT_LT((heap.D * r_wrong).norm(), 1e-10 * w.norm()) << (system == &dense ? "dense" : "by bodies");
+    }
+  }
 }
 
 // Normal and tangent coupled strongly, with so much friction that alternation may cycle: contact by contact the law is
