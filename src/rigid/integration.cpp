@@ -23,8 +23,14 @@ Vector6d freeTwist(const RigidBody& body, const Vector3d& gravity, const Wrench&
 
 void advancePose(RigidBody& body, double dt) {
   if (body.motion == BodyMotion::kPrescribed && body.prescribed.in_place) return;
-  body.p_WBcm += dt * body.twist.head<3>();
-  body.q_WB = (exponential(dt * body.twist.tail<3>()) * body.q_WB).normalized();
+  const Vector3d angular_velocity = body.twist.tail<3>();
+  // What is prescribed is the motion of the frame's origin: on a circle around that the centre of mass would leave it.
+  const bool by_origin = body.motion == BodyMotion::kPrescribed;
+  const Vector3d arm = by_origin ? Vector3d(body.q_WB * body.p_BBcm) : Vector3d::Zero();
+  const Vector3d velocity = body.twist.head<3>() - angular_velocity.cross(arm);
+  body.q_WB = (exponential(dt * angular_velocity) * body.q_WB).normalized();
+  body.p_WBcm += dt * velocity;
+  if (by_origin) body.p_WBcm += body.q_WB * body.p_BBcm - arm;
 }
 
 FreeMotion freeMotion(const RigidBody& body, const Vector3d& gravity, const Wrench& held, const Vector3d& expected,

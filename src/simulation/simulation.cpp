@@ -79,6 +79,14 @@ void Simulation::Impl::prepareGeometry() {
   state.surface[0].extendIntoSolids(solids.cell_distance);
 }
 
+// What a sub-step should be at most, s.
+double Simulation::Impl::longestStep() const {
+  const double by_speed = scene.solver.cfl * grid.h / std::max(bodySpeed(), state.liquid_speed);
+  const double gravity = scene.gravity.norm();
+  if (!hasSurface() || gravity == 0.0) return by_speed;
+  return std::min(by_speed, longestWaveStep(grid.h, gravity, state.typical_viscosity / scene.liquid.density));
+}
+
 double Simulation::Impl::bodySpeed() const {
   double speed = 0.0;
   for (const RigidBody& body : state.bodies) {
@@ -147,9 +155,8 @@ StepReport Simulation::step() {
     bool saved = false;
     bool good = true;
     while (good && left > 1e-9 * m.scene.time_step) {
-      // As many equal sub-steps as the present speeds ask for; looked at anew after each.
-      const double speed = std::max(m.bodySpeed(), m.state.liquid_speed);
-      const double wanted = std::ceil(left * speed / (m.scene.solver.cfl * m.grid.h) - 1e-9);
+      // As many equal sub-steps as the present speeds ask for, and the surface's waves; looked at anew after each.
+      const double wanted = std::ceil(left / m.longestStep() - 1e-9);
       const double most = std::ceil(kLargestSubsteps * left / m.scene.time_step - 1e-9);
       const double count = std::clamp(wanted, 1.0, most);
       double dt = std::min(left / count, longest);

@@ -49,7 +49,7 @@ struct SimulationState {
   int euler_steps = kStepsAfterSet;               // sub-steps of backward Euler that are due
   std::size_t substeps = 0;
   bool started = false;
-  double typical_viscosity = 0.0;  // Pa s, of a non-Newtonian liquid
+  double typical_viscosity = 0.0;  // Pa s; of a non-Newtonian liquid that of the last solve
   double liquid_energy = 0.0;      // J, kinetic, after the last output step
 };
 
@@ -77,6 +77,7 @@ struct Simulation::Impl {
   bool nonNewtonian() const { return hasLiquid() && !viscosity_law.constant(); }
   bool noSlip() const { return viscosity_law.most() > 0.0; }
   double bodySpeed() const;
+  double longestStep() const;
   bool substep(double dt, StepReport& report);
   bool secondOrder() const { return scene.solver.time_stepping == TimeStepping::kBdf2; }
   StepWeights weights(double dt) const;

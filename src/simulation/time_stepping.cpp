@@ -1,5 +1,7 @@
 #include "simulation/time_stepping.h"
 
+#include <cmath>
+
 namespace monolith {
 namespace {
 
@@ -13,6 +15,12 @@ StepWeights bdf2Weights(double dt, double last_dt) {
   if (!(last_dt > 0.0) || dt > kLargestRatio * last_dt) return eulerWeights(dt);
   const double r = dt / last_dt;
   return {2, dt, (1.0 + r) / (1.0 + 2.0 * r) * dt, r / (1.0 + 2.0 * r)};
+}
+
+double longestWaveStep(double cell_width, double gravity, double kinematic_viscosity) {
+  const double k = M_PI / cell_width;
+  const double damping = kinematic_viscosity * k * k, square = gravity * k;
+  return (damping + std::sqrt(damping * damping + 2.0 * square)) / square;
 }
 
 }  // namespace monolith

@@ -16,6 +16,9 @@
 // it. For a wave or a floating body this pair is neutrally stable up to omega dt = 2, as is backward Euler's x^n in the
 // solve and x^n + dt u^(n+1) after it.
 //
+// The shortest waves that a grid holds, of two cells, would go beyond that in steps of sqrt(h/g) and more, and a
+// surface would never come to rest: see longestWaveStep().
+//
 // Steps in which liquid crosses most of a cell or more are of backward Euler, whatever was asked for.
 //
 // After a jump of the velocity (a start, a state that was set, an impact) a step has no past to continue: it is one of
@@ -33,5 +36,9 @@ struct StepWeights {
 StepWeights eulerWeights(double dt);
 // Backward Euler if the step is more than twice the last one (zero-stable up to 1 + sqrt(2)) or there is none.
 StepWeights bdf2Weights(double dt, double last_dt);
+
+// s, up to which the shortest waves on deep liquid die away. With k = pi/h, omega^2 = g k and the damping nu k^2, which
+// is implicit, they are stable while (omega dt)^2 < 4 + 4 nu k^2 dt; half of that is allowed.
+double longestWaveStep(double cell_width, double gravity, double kinematic_viscosity);
 
 }  // namespace monolith

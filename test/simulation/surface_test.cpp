@@ -70,6 +70,25 @@ TEST(Surface, StaysStillWhereSolidsSlantOutOfIt) {
   }
 }
 
+// The shortest waves would live for ever in steps as long as that.
+TEST(Surface, APoolComesToRestWhateverTheOutputStep) {
+  for (const double dt : {0.02, 0.1, 0.2}) {
+    Scene scene = water({20, 4, 15}, 0.02);
+    scene.time_step = dt;
+    scene.liquid.dynamic_viscosity = 0.5;
+    scene.liquid.boxes = {Eigen::AlignedBox3d(Vector3d::Zero(), Vector3d(0.2, 0.08, 0.22)),
+                          Eigen::AlignedBox3d(Vector3d(0.2, 0.0, 0.0), Vector3d(0.4, 0.08, 0.2))};
+    Simulation simulation(scene);
+    double fastest = 0.0;
+    while (simulation.time() < 6.0) {
+      const StepReport report = simulation.step();
+      ASSERT_TRUE(report.committed()) << report.message;
+      if (simulation.time() > 5.0) fastest = std::max(fastest, report.maximum_speed);
+    }
+    EXPECT_LT(fastest, 0.01) << dt;
+  }
+}
+
 TEST(Surface, ALightBallComesToRest) {
   Scene scene = water({20, 20, 24}, 0.01);
   scene.liquid.dynamic_viscosity = 0.1;
