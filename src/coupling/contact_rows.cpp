@@ -13,6 +13,10 @@ constexpr double kRecoveryTime = 0.02;
 // Contacts of two steps are the same one if they are closer than this and push in about the same direction.
 constexpr double kSamePlace = 0.5;   // cell widths
 constexpr double kSameNormal = 0.9;  // cosine
+// What is prescribed may leave another body no room, and the impulses that jam it grow until the contacts' compliance
+// lets them: so large that round-off of the normals would throw it aside. This much softer it only gives way; a contact
+// that can hold gives by less than any tolerance still.
+constexpr double kSoftness = 1000.0;
 
 // Two directions normal to n, the same for the same n.
 Eigen::Matrix<double, 3, 2> tangentBasis(const Eigen::Vector3d& n) {
@@ -34,6 +38,7 @@ ContactRows buildContactRows(const StepProblem& problem, const std::vector<Conta
   out.J = Eigen::MatrixXd::Zero(3 * m, problem.bodyUnknowns());
   out.bias = Eigen::VectorXd::Zero(3 * m);
   out.friction = Eigen::VectorXd::Zero(m);
+  out.softness = Eigen::VectorXd::Ones(3 * m);
   std::map<std::pair<int, int>, int> pairs;
   for (Eigen::Index c = 0; c < m; ++c) {
     const Contact& contact = contacts[c];
@@ -48,6 +53,9 @@ ContactRows buildContactRows(const StepProblem& problem, const std::vector<Conta
       if (body == Contact::kWall) continue;
       const RigidBody& rigid = (*problem.bodies)[body];
       approach += sign * rigid.velocityAt(contact.point).dot(contact.normal);
+      if (rigid.motion == BodyMotion::kPrescribed) {
+        for (const Eigen::Index i : row) out.softness[i] = kSoftness;
+      }
       for (int d = 0; d < 3; ++d) {
         Vector6d j;
         j.head<3>() = sign * axis[d];

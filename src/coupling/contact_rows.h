@@ -28,6 +28,7 @@ struct ContactRows {
   Eigen::MatrixXd J;         // 3m x 6n
   Eigen::VectorXd bias;      // 3m, m/s; normal: non-penetration is (J v + bias)_n >= 0
   Eigen::VectorXd friction;  // m
+  Eigen::VectorXd softness;  // 3m, of its compliance (step_solver.h): 1, more where a body moves as prescribed
   std::vector<Eigen::Matrix<double, 3, 2>> tangents;
   std::vector<int> pair;     // m: contacts of the same two bodies have the same number, from 0 on
 

@@ -28,7 +28,11 @@ constexpr double kRoundOff = 1e-13;
 // Impulses of contacts that press are solved for next to those of the small system: moving away from them costs this
 // part of the contact's response. Without it what redundant contacts do one by one is as sensitive as
 // kContactCompliance is small.
-constexpr double kProximity = 1e-4 / kContactCompliance;  // times its compliance
+constexpr double kProximity = 1e-4 / kContactCompliance;  // times its compliance, were it as hard as others
+
+Eigen::VectorXd proximity(const ContactRows& contacts, const Eigen::VectorXd& compliance) {
+  return kProximity * compliance.cwiseQuotient(contacts.softness);
+}
 
 }  // namespace
 
@@ -40,7 +44,7 @@ struct FastSolver::Impl {
   // Response of the twists of the bodies in contact to unit impulses, by one liquid solve each; false if one fails.
   bool solveResponse(const ContactRows& contacts, const CoupledOptions& options, CoupledReport& report,
                      Eigen::MatrixXd& K) {
-    system.setBorder(makeBorder(contacts, openStates(contacts)), Eigen::VectorXd(), kProximity);
+    system.setBorder(makeBorder(contacts, openStates(contacts)), Eigen::VectorXd());
     const Eigen::Index n = system.bodySize();
     K = system.estimatedResponse();
     StepVector push_fields, answer_fields;
@@ -63,13 +67,14 @@ struct FastSolver::Impl {
   void appendBorder(const ContactRows& contacts, const ContactStates& states, const Eigen::VectorXd& compliance,
                     const Eigen::VectorXd& r, ContactBorder& border, BorderedVector& rhs, BorderedVector& x) {
     border = makeBorder(contacts, states);
-    system.setBorder(border, compliance, kProximity);
+    const Eigen::VectorXd held = proximity(contacts, compliance);
+    system.setBorder(border, compliance + held);
     const Eigen::VectorXd start = borderUnknowns(contacts, states, border, r);
     const Eigen::Index bodies = system.bodySize();
     rhs.rest.resize(bodies + border.count());
     x.rest.resize(bodies + border.count());
     for (Eigen::Index i = 0; i < border.count(); ++i) {
-      rhs.rest[bodies + i] = border.bias[i] - kProximity * compliance[border.entry[i]] * start[i];
+      rhs.rest[bodies + i] = border.bias[i] - held[border.entry[i]] * start[i];
       x.rest[bodies + i] = start[i];
     }
   }
@@ -117,7 +122,7 @@ CoupledReport FastSolver::solveWithContacts(StepVector& rhs_fields, const Contac
   if (count > 0) {
     guess.setResponse(system.estimatedResponse());
     // One cycle on the whole residual says roughly how the bodies would move without contact.
-    system.setBorder(makeBorder(contacts, openStates(contacts)), guess.compliance(), kProximity);
+    system.setBorder(makeBorder(contacts, openStates(contacts)), Eigen::VectorXd());
     guess.startFrom(wet ? system.improvedTwists(rhs, x) : system.moveDry(rhs, x), wet, report);
     // What presses the contacts may be all that there is.
     rhs_norm = std::max(rhs_norm, bodiesNorm(p, guess.push()));

@@ -147,14 +147,14 @@ Eigen::MatrixXd PackedSystem::estimatedResponse() const {
   return inverse.asDiagonal() * S_inverse_ * inverse.asDiagonal();
 }
 
-void PackedSystem::setBorder(const ContactBorder& physical, const Eigen::VectorXd& compliance, double proximity) {
+void PackedSystem::setBorder(const ContactBorder& physical, const Eigen::VectorXd& compliance) {
   const Eigen::VectorXd inverse = scale_.cwiseInverse();
   border_R_ = (physical.R * inverse.asDiagonal()).sparseView();
   border_C_ = (inverse.asDiagonal() * physical.C).sparseView();
   const Eigen::Index k = physical.count();
   border_compliance_.resize(k);
   for (Eigen::Index i = 0; i < k; ++i) {
-    border_compliance_[i] = compliance[physical.entry[i]] * (1.0 + proximity) + physical.mobility[i];
+    border_compliance_[i] = compliance[physical.entry[i]] + physical.mobility[i];
   }
   if (k == 0) return;
   const Eigen::MatrixXd moved = border_R_ * S_inverse_;

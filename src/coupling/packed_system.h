@@ -60,8 +60,8 @@ class PackedSystem {
   // S from a response that was solved for; it ages from then on.
   void adoptResponse(const Eigen::MatrixXd& K);
 
-  // Contacts that take part, of rows with these compliances, and how much more than that each is given.
-  void setBorder(const ContactBorder& physical, const Eigen::VectorXd& compliance, double proximity);
+  // Contacts that take part, of rows with these compliances.
+  void setBorder(const ContactBorder& physical, const Eigen::VectorXd& compliance);
 
   // The motion of bodies that no liquid touches, given the forces on them: S is exact. Returns the twists.
   Eigen::VectorXd moveDry(const BorderedVector& rhs, BorderedVector& x) const;

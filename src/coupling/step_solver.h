@@ -45,7 +45,7 @@ class StepSolver {
 
 // Compliance of contacts relative to that of their bodies: keeps redundant contacts (four corners of a box) solvable
 // and unique, at a speed far below any tolerance. The same for all contacts of a pair, so that every solver shares a
-// load among them in the same way.
+// load among them in the same way. Times their softness.
 constexpr double kContactCompliance = 1e-9;
 void addCompliance(const ContactRows& contacts, Eigen::MatrixXd& response, Eigen::VectorXd& compliance);
 

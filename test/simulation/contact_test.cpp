@@ -160,6 +160,30 @@ TEST(Contact, ABodyThatIsPushedWhereNothingElseActsGoesAlong) {
   }
 }
 
+// What is prescribed has its way, but the body that it leaves no room is not thrown aside by round-off.
+TEST(Contact, ABodyThatIsJammedIsNotThrownAside) {
+  Scene scene;
+  scene.source = "test";
+  scene.tank.size = {0.4, 0.2, 0.2};
+  scene.tank.origin.setZero();
+  scene.tank.cell_width = 0.02;
+  scene.time_step = 0.02;
+  scene.bodies = {boxBody("box", {0.1, 0.08, 0.08}, 1500.0, {0.2, 0.1, 0.0401}),
+                  boxBody("press", {0.04, 0.16, 0.16}, 1000.0, {0.1, 0.1, 0.1})};
+  scene.bodies[1].motion = BodyMotion::kPrescribed;
+  scene.bodies[1].prescribed.twist[0] = 0.2;
+  Simulation simulation(scene);
+  double furthest = 0.0;
+  while (simulation.time() < 1.0) {
+    const StepReport r = simulation.step();
+    ASSERT_TRUE(r.committed()) << r.message;
+    const BodyState box = simulation.bodyStates()[0];
+    furthest = std::max(furthest, box.X_WB.translation()[0]);
+    EXPECT_LT(box.velocity.tail<2>().norm(), 0.01) << simulation.time();
+  }
+  EXPECT_NEAR(furthest, 0.35, 1e-3) << "it is pushed to the wall";
+}
+
 // A contact that did not go along with what rolls would push it on.
 TEST(Contact, WhatRollsOnAnotherBodyKeepsItsSpeed) {
   constexpr double kRadius = 0.03, kSpeed = 0.02, kTop = 0.1;
