@@ -29,6 +29,7 @@ struct Small {
     rows.bias = Eigen::VectorXd::NullaryExpr(3 * kContacts, draw);
     rows.bias.head(kContacts).array() -= 4.0;  // they press
     rows.friction = Eigen::VectorXd::Constant(kContacts, 0.2);
+    rows.softness = Eigen::VectorXd::Ones(3 * kContacts);
     rows.pair = {0, 1, 2};
     const Eigen::MatrixXd root = Eigen::MatrixXd::NullaryExpr(kUnknowns, kUnknowns, draw);
     K = root * root.transpose() / kUnknowns + 0.5 * Eigen::MatrixXd::Identity(kUnknowns, kUnknowns);
