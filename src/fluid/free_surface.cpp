@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "fluid/advection.h"
 #include "fluid/interpolation.h"
 #include "geometry/cube_fraction.h"
-#include "solve/blocked_sum.h"
+#include "solve/connected_runs.h"
 #include "solve/whole_fields.h"
 
 namespace monolith {
@@ -15,6 +17,10 @@ namespace {
 constexpr double kFar = 1e3;               // cell widths
 constexpr double kTravelToRedistance = 1.0;  // cells
 constexpr double kLargestShift = 0.1;      // cells in one correction
+constexpr int kCorrections = 8;
+constexpr double kVolumeTolerance = 1e-10;
+// Of cells around a region of liquid that count as its own: those that its surface may cut, and more.
+constexpr int kLayers = 3;
 // Half-width, in cells, of the band around the surface in which the level set is a distance; beyond it is just as large
 // as that, which is further than anyone looks.
 constexpr double kBand = 6.0;
@@ -172,6 +178,7 @@ FreeSurface& FreeSurface::operator=(const FreeSurface& other) {
   empty_ = other.empty_;
   travelled_ = other.travelled_;
   copyField(other.distance_, distance_);
+  regions_ = other.regions_;
   return *this;
 }
 
@@ -284,26 +291,62 @@ void FreeSurface::extendIntoSolids(const std::vector<float>& solid_distance) {
   extendIntoHalo(l, distance_);
 }
 
-// The cells that the surface cuts when shifted by up to `margin`, plane by plane, and what the others hold.
-FreeSurface::CutCells FreeSurface::findCutCells(double margin, const std::vector<double>& cell_fluid) const {
+FreeSurface::Regions FreeSurface::findRegions(const std::vector<double>& cell_fluid,
+                                              const FaceField<double>& open) const {
   const Lattice& l = grid_.lattice;
-  CutCells out;
-  out.planes.resize(l.n[2]);
+  std::vector<std::uint8_t> has(l.size);
+#pragma omp parallel for simd schedule(static)
+  for (std::size_t c = 0; c < l.size; ++c) has[c] = (distance_[c] < 0.0) & (cell_fluid[c] > 0.0);
+  ConnectedRuns runs(l, has, open);
+  std::vector<int> region_of;
+  Regions out;
+  out.count = runs.numberRegions(region_of);
+  if (out.count <= 1) return out;
+  out.of.assign(l.size, -1);
+  runs.forEachRun([&](int run, std::ptrdiff_t begin, std::ptrdiff_t end) {
+    std::fill(out.of.begin() + begin, out.of.begin() + end, region_of[run]);
+  });
+  std::vector<std::int32_t> inner;
+  for (int layer = 0; layer < kLayers; ++layer) {
+    fillHalo(l, out.of);
+    copyField(out.of, inner);
+#pragma omp parallel for schedule(static, kPlanesInTurn)
+    for (int k = 0; k < l.n[2]; ++k) {
+      for (int j = 0; j < l.n[1]; ++j) {
+        const auto row = l.index(0, j, k);
+        for (auto c = row; c < row + l.n[0]; ++c) {
+          for (int a = 0; a < 3 && out.of[c] < 0; ++a) {
+            out.of[c] = inner[c - l.stride[a]] >= 0 ? inner[c - l.stride[a]] : inner[c + l.stride[a]];
+          }
+        }
+      }
+    }
+  }
+  return out;
+}
+
+// The cells that the surface cuts when shifted by up to `margin`, plane by plane, and what the others hold.
+FreeSurface::CutCells FreeSurface::findCutCells(double margin, const std::vector<double>& cell_fluid,
+                                                const Regions& regions) const {
+  const Lattice& l = grid_.lattice;
+  CutCells out(l.n[2]);
 #pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int k = 0; k < l.n[2]; ++k) {
-    CutPlane& plane = out.planes[k];
+    CutPlane& plane = out[k];
+    plane.full.assign(std::max(regions.count, 1), 0.0);
     for (int j = 0; j < l.n[1]; ++j) {
       const auto row = l.index(0, j, k);
       for (auto c = row; c < row + l.n[0]; ++c) {
         const double d = distance_[c];
         if (d > 1.0 + margin || cell_fluid[c] == 0.0) continue;
+        const int region = regions.of.empty() ? 0 : std::max(regions.of[c], 0);
         if (d <= -1.0 - margin) {
-          plane.full += cell_fluid[c];
+          plane.full[region] += cell_fluid[c];
           continue;
         }
         Eigen::Vector3d slope;
         for (int a = 0; a < 3; ++a) slope[a] = distance_[c + l.stride[a]] - distance_[c - l.stride[a]];
-        plane.cells.push_back({d, cell_fluid[c], slope});
+        plane.cells.push_back({d, cell_fluid[c], slope, region});
       }
     }
   }
@@ -311,53 +354,178 @@ FreeSurface::CutCells FreeSurface::findCutCells(double margin, const std::vector
 }
 
 // One sum per plane, added in order: the same bits at any thread count.
-double FreeSurface::shiftedVolume(double shift, CutCells& cut) const {
-  const int planes = static_cast<int>(cut.planes.size());
+Eigen::VectorXd FreeSurface::shiftedVolumes(const Eigen::VectorXd& shifts, CutCells& cut) const {
+  const int planes = static_cast<int>(cut.size());
 #pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int k = 0; k < planes; ++k) {
-    CutPlane& plane = cut.planes[k];
+    CutPlane& plane = cut[k];
     plane.sum = plane.full;
     for (const CutCell& cell : plane.cells) {
-      const double d = cell.distance + shift;
+      const double d = cell.distance + shifts[cell.region];
       if (d > 1.0) continue;
-      plane.sum += (d > -1.0 ? insideFraction(d, cell.slope, 1.0) : 1.0) * cell.fluid;
+      plane.sum[cell.region] += (d > -1.0 ? insideFraction(d, cell.slope, 1.0) : 1.0) * cell.fluid;
     }
   }
-  double sum = 0.0;
-  for (const CutPlane& plane : cut.planes) sum += plane.sum;
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(shifts.size());
+  for (const CutPlane& plane : cut) sum += Eigen::Map<const Eigen::VectorXd>(plane.sum.data(), sum.size());
   return sum * grid_.cellVolume();
 }
 
 double FreeSurface::volume(const std::vector<double>& cell_fluid) const {
   if (empty_) return 0.0;
-  CutCells cut = findCutCells(0.0, cell_fluid);
-  return shiftedVolume(0.0, cut);
+  CutCells cut = findCutCells(0.0, cell_fluid, Regions());
+  return shiftedVolumes(Eigen::VectorXd::Zero(1), cut).sum();
 }
 
-double FreeSurface::correctVolume(double target, const std::vector<double>& cell_fluid) {
+// The region of now that is the nearest to what was `lost` before, by the way around solids; -1: there is none.
+int FreeSurface::nearestRegion(int lost, const Regions& now, const FaceField<double>& open) const {
+  const Lattice& l = grid_.lattice;
+  std::vector<std::ptrdiff_t> reached;
+  std::vector<char> known(l.size, 0);
+  for (int k = 0; k < l.n[2]; ++k) {
+    for (int j = 0; j < l.n[1]; ++j) {
+      const auto row = l.index(0, j, k);
+      for (auto c = row; c < row + l.n[0]; ++c) {
+        if (regions_.of[c] != lost) continue;
+        known[c] = 1;
+        reached.push_back(c);
+      }
+    }
+  }
+  for (std::size_t i = 0; i < reached.size(); ++i) {
+    const auto c = reached[i];
+    if (now.of[c] >= 0) return now.of[c];
+    const std::array<int, 3> at = l.cell(c);
+    for (int a = 0; a < 3; ++a) {
+      for (const int side : {0, 1}) {
+        const bool ends = at[a] == (side == 0 ? 0 : l.n[a] - 1);
+        if ((ends && !l.periodic[a]) || !(open[a][c + side * l.stride[a]] > 0.0)) continue;
+        const auto next = c + (side == 0 ? -1 : 1) * (ends ? 1 - l.n[a] : 1) * l.stride[a];
+        if (known[next]) continue;
+        known[next] = 1;
+        reached.push_back(next);
+      }
+    }
+  }
+  return -1;
+}
+
+// Regions of now that have to do with the same ones of before share their volumes. Returns the group of each region;
+// known: of each group, what its regions of before held, m^3, or -1 if it has none.
+std::vector<int> FreeSurface::groupRegions(const Regions& now, const FaceField<double>& open,
+                                           std::vector<double>& known) const {
+  std::vector<int> group_of(now.count, 0);
+  known.assign(1, 0.0);
+  if (now.of.empty() || regions_.of.empty()) return group_of;
+  std::vector<int> parent(now.count + regions_.count);
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  int here = -1, there = -1;  // most cells are of the same two as the one before
+  for (std::size_t c = 0; c < now.of.size(); ++c) {
+    if (!(distance_[c] < 0.0) || now.of[c] < 0 || regions_.of[c] < 0) continue;
+    if (now.of[c] == here && regions_.of[c] == there) continue;
+    here = now.of[c];
+    there = regions_.of[c];
+    const int a = root(here), b = root(now.count + there);
+    parent[std::max(a, b)] = std::min(a, b);
+  }
+  known.clear();
+  std::vector<int> number(parent.size(), -1);
+  for (int region = 0; region < now.count; ++region) {
+    int& group = number[root(region)];
+    if (group < 0) {
+      group = static_cast<int>(known.size());
+      known.push_back(-1.0);
+    }
+    group_of[region] = group;
+  }
+  for (int region = 0; region < regions_.count; ++region) {
+    int group = number[root(now.count + region)];
+    if (group < 0) {
+      // A drop that is no more.
+      const int nearest = nearestRegion(region, now, open);
+      if (nearest < 0) continue;
+      group = group_of[nearest];
+    }
+    known[group] = std::max(known[group], 0.0) + regions_.volume[region];
+  }
+  return group_of;
+}
+
+double FreeSurface::correctVolume(double target, const std::vector<double>& cell_fluid, const FaceField<double>& open) {
   if (full_ || empty_) return 0.0;
   constexpr double kStep = 1e-3;
-  CutCells cut = findCutCells(kLargestShift + kStep, cell_fluid);
-  const double before = shiftedVolume(0.0, cut);
-  double shift = 0.0;
-  double v = before;
-  double slope = 0.0;
-  for (int it = 0; it < 8 && std::abs(v - target) > 1e-10 * target; ++it) {
-    if (it == 0) {
-      slope = (shiftedVolume(shift + kStep, cut) - shiftedVolume(shift - kStep, cut)) / (2.0 * kStep);
+  Regions now = findRegions(cell_fluid, open);
+  if (now.count == 0) return 0.0;
+  std::vector<double> known;
+  const std::vector<int> group_of = groupRegions(now, open, known);
+  const auto groups = static_cast<Eigen::Index>(known.size());
+  CutCells cut = findCutCells(kLargestShift + kStep, cell_fluid, now);
+  Eigen::VectorXd by_region;
+  const auto volumes = [&](const Eigen::VectorXd& shifts) {
+    by_region = shiftedVolumes(shifts(group_of), cut);
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(groups);
+    for (int region = 0; region < now.count; ++region) sum[group_of[region]] += by_region[region];
+    return sum;
+  };
+  Eigen::VectorXd shift = Eigen::VectorXd::Zero(groups), v = volumes(shift), slope;
+  const double before = v.sum();
+  const auto findSlope = [&] {
+    const Eigen::VectorXd step = Eigen::VectorXd::Constant(groups, kStep);
+    slope = (volumes(shift + step) - volumes(shift - step)) / (2.0 * kStep);
+  };
+  Eigen::VectorXd wanted = Eigen::VectorXd::Constant(groups, target);
+  if (groups > 1) {
+    // What is new is as large as it is; what is missing of the whole all share.
+    findSlope();
+    double missing = target, surface = 0.0;
+    for (Eigen::Index g = 0; g < groups; ++g) {
+      wanted[g] = known[g] < 0.0 ? v[g] : known[g];
+      missing -= wanted[g];
+      if (known[g] >= 0.0) surface += slope[g];
     }
-    if (!(slope < 0.0)) break;
-    const double next = std::clamp(shift - (v - target) / slope, -kLargestShift, kLargestShift);
-    const double volume = shiftedVolume(next, cut);
+    for (Eigen::Index g = 0; g < groups && surface < 0.0; ++g) {
+      if (known[g] >= 0.0) wanted[g] += missing * slope[g] / surface;
+    }
+  }
+  for (int it = 0; it < kCorrections; ++it) {
+    Eigen::VectorXd next = shift;
+    for (Eigen::Index g = 0; g < groups; ++g) {
+      if (std::abs(v[g] - wanted[g]) <= kVolumeTolerance * target) continue;
+      if (slope.size() == 0) findSlope();
+      if (!(slope[g] < 0.0)) continue;
+      next[g] = std::clamp(shift[g] - (v[g] - wanted[g]) / slope[g], -kLargestShift, kLargestShift);
+    }
+    if (next == shift) break;
+    const Eigen::VectorXd volume = volumes(next);
     // From the second on, the secant.
-    if (next != shift) slope = (volume - v) / (next - shift);
+    for (Eigen::Index g = 0; g < groups; ++g) {
+      if (next[g] != shift[g]) slope[g] = (volume[g] - v[g]) / (next[g] - shift[g]);
+    }
     shift = next;
     v = volume;
   }
-  if (shift == 0.0) return 0.0;
+  if (now.count > 1) {
+    // What a drop could not reach it is still owed.
+    v = volumes(shift);
+    for (int region = 0; region < now.count; ++region) {
+      const int g = group_of[region];
+      now.volume.push_back(v[g] > 0.0 ? by_region[region] * wanted[g] / v[g] : 0.0);
+    }
+  }
+  regions_ = std::move(now);
+  if (shift.isZero(0.0)) return 0.0;
+  const bool all = regions_.of.empty();
 #pragma omp parallel for simd schedule(static)
-  for (std::size_t c = 0; c < distance_.size(); ++c) distance_[c] += shift;
-  return v - before;
+  for (std::size_t c = 0; c < distance_.size(); ++c) {
+    const int region = all ? 0 : regions_.of[c];
+    if (region >= 0) distance_[c] += shift[group_of[region]];
+  }
+  if (!all) extendIntoHalo(grid_.lattice, distance_);
+  return v.sum() - before;
 }
 
 Eigen::Vector3d FreeSurface::normal(std::ptrdiff_t c) const {

@@ -1,11 +1,12 @@
 #pragma once
-// The liquid's surface as a level set: signed distance in cell widths at cell centres, negative in the liquid, moved by the
-// velocity and kept a distance, in a band around the surface, by Gauss-Seidel on the upwind eikonal equation
-// (Zhao 2005, Math. Comput. 74, 603), its cells in two colours.
+// The liquid's surface as a level set: signed distance in cell widths at cell centres, negative in the liquid, moved by
+// the velocity and kept a distance, in a band around the surface, by Gauss-Seidel on the upwind eikonal equation (Zhao
+// 2005, Math. Comput. 74, 603), its cells in two colours.
 //
-// Volume: the level set is shifted, by a fraction of a percent of a cell, to the volume that the liquid has had from the
-// start; how much is reported. What detaches below the grid's resolution thus returns to the pool.
-// In solids the level set is continued along their normals: the surface meets them at 90 degrees.
+// Volume: the level set is shifted, by a fraction of a percent of a cell, to the volume that the liquid has had from
+// the start; how much is reported. Regions of liquid that are not connected keep their own volume each; what detaches
+// and falls below the grid's resolution returns to the nearest. In solids the level set is continued along their
+// normals: the surface meets them at 90 degrees.
 
 #include <vector>
 
@@ -39,8 +40,9 @@ class FreeSurface {
   // Liquid volume, m^3; cell_fluid: part of each cell that is not solid.
   double volume(const std::vector<double>& cell_fluid) const;
 
-  // Shifts the surface until volume() is `target`; returns the volume added, m^3.
-  double correctVolume(double target, const std::vector<double>& cell_fluid);
+  // Shifts the surface until volume() is `target`; returns the volume added, m^3. open: part of each face that is not
+  // solid.
+  double correctVolume(double target, const std::vector<double>& cell_fluid, const FaceField<double>& open);
 
   // Unit normal out of the liquid, at a cell.
   Eigen::Vector3d normal(std::ptrdiff_t cell) const;
@@ -50,14 +52,19 @@ class FreeSurface {
     double distance = 0.0;
     double fluid = 0.0;
     Eigen::Vector3d slope = Eigen::Vector3d::Zero();
+    int region = 0;
   };
+  // full, sum: cells, by region: of those that lie in the liquid, and with what the surface cuts.
   struct CutPlane {
     std::vector<CutCell> cells;
-    double full = 0.0;  // cells, of those that lie in the liquid
-    double sum = 0.0;
+    std::vector<double> full, sum;
   };
-  struct CutCells {
-    std::vector<CutPlane> planes;
+  using CutCells = std::vector<CutPlane>;
+  // Regions of liquid; a cell's, also of those around it, or -1. `of` is empty where there is but one.
+  struct Regions {
+    int count = 1;
+    std::vector<std::int32_t> of;
+    std::vector<double> volume;  // m^3, that they ought to have
   };
   // Room to work in; a copy has its own.
   struct Scratch {
@@ -69,14 +76,19 @@ class FreeSurface {
   };
 
   void redistance();
-  CutCells findCutCells(double margin, const std::vector<double>& cell_fluid) const;
-  double shiftedVolume(double shift, CutCells& cut) const;
+  Regions findRegions(const std::vector<double>& cell_fluid, const FaceField<double>& open) const;
+  CutCells findCutCells(double margin, const std::vector<double>& cell_fluid, const Regions& regions) const;
+  int nearestRegion(int lost, const Regions& now, const FaceField<double>& open) const;
+  std::vector<int> groupRegions(const Regions& now, const FaceField<double>& open, std::vector<double>& known) const;
+  // m^3, of each region, with a shift for each.
+  Eigen::VectorXd shiftedVolumes(const Eigen::VectorXd& shifts, CutCells& cut) const;
 
   MacGrid grid_;
   bool full_ = false;
   bool empty_ = false;
   double travelled_ = 0.0;  // cells, since the distance was last made one
   std::vector<double> distance_;
+  Regions regions_;  // of the last correction
   Scratch scratch_;
 };
 

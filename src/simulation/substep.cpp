@@ -237,7 +237,7 @@ void Simulation::Impl::moveLiquid(const StepWeights& w, StepReport& step) {
     prepareGeometry();
   }
   state.liquid_speed = step.maximum_speed;
-  step.volume_correction += state.surface[0].correctVolume(target_volume, solids.cell_fluid);
+  step.volume_correction += state.surface[0].correctVolume(target_volume, solids.cell_fluid, solids.fluid);
 }
 
 bool Simulation::Impl::substep(double dt, StepReport& step) {

@@ -86,9 +86,44 @@ TEST(FreeSurface, CorrectionReachesTheTargetAndSaysByHowMuch) {
   const MacGrid grid = cube(12, 0.05);
   const std::vector<double> open(grid.lattice.size, 1.0);
   FreeSurface surface(grid, 0.25, {});
-  const double added = surface.correctVolume(0.0901, open);
+  const double added = surface.correctVolume(0.0901, open, {open, open, open});
   EXPECT_NEAR(surface.volume(open), 0.0901, 1e-9);
   EXPECT_NEAR(added, 0.0001, 1e-9);
+}
+
+// Two pools with a wall between them, and a drop above the left one, whose liquid is made to grow.
+TEST(FreeSurface, PoolsThatAreApartKeepTheirVolumes) {
+  const MacGrid grid{Lattice({16, 8, 16}, {false, false, false}), 0.1, Eigen::Vector3d::Zero()};
+  const Lattice& l = grid.lattice;
+  std::vector<double> fluid(l.size, 1.0);
+  FaceField<double> open{fluid, fluid, fluid}, velocity;
+  for (auto& field : velocity) field.assign(l.size, 0.0);
+  for (int k = 0; k < 16; ++k) {
+    for (int j = 0; j < 8; ++j) {
+      for (int i = 6; i < 10; ++i) {
+        const auto c = l.index(i, j, k);
+        fluid[c] = 0.0;
+        for (int a = 0; a < 3; ++a) open[a][c] = open[a][c + l.stride[a]] = 0.0;
+      }
+      for (int i = 0; i < 8; ++i) velocity[2][l.index(i, j, k)] = 0.1;
+    }
+  }
+  const auto box = [](double x0, double x1, double z0, double z1) {
+    return Eigen::AlignedBox3d(Eigen::Vector3d(x0, 0.0, z0), Eigen::Vector3d(x1, 0.8, z1));
+  };
+  FreeSurface surface(grid, 0.0, {box(0.0, 0.6, 0.0, 0.43), box(1.0, 1.6, 0.0, 0.72), box(0.1, 0.5, 0.9, 1.3)});
+  const double target = surface.volume(fluid);
+  surface.correctVolume(target, fluid, open);
+  const FreeSurface before = surface;
+  surface.advect(velocity, 0.5, 0.1);
+  EXPECT_GT(surface.volume(fluid), 1.03 * target);
+  const FreeSurface grown = surface;
+  surface.correctVolume(target, fluid, open);
+  for (int correction = 0; correction < 10; ++correction) surface.correctVolume(target, fluid, open);
+  EXPECT_NEAR(surface.volume(fluid), target, 1e-9 * target);
+  const auto columnOf = [&](const FreeSurface& of, int i) { return of.distance()[l.index(i, 4, i < 6 ? 4 : 7)]; };
+  EXPECT_NEAR(columnOf(surface, 12), columnOf(before, 12), 1e-9) << "the right pool is as it was";
+  EXPECT_GT(columnOf(surface, 0), columnOf(grown, 0) + 0.2) << "the left one is lower again";
 }
 
 TEST(FreeSurface, ADropCarriedAcrossTheTankKeepsItsPlaceAndSize) {

@@ -31,6 +31,33 @@ BodyDescription fixed(BodyDescription body, double pitch = 0.0) {
   return body;
 }
 
+// Spray that falls below the grid's resolution comes back to the side that it was lost on.
+TEST(Surface, APoolBehindAWallKeepsItsLevel) {
+  Scene scene = water({24, 10, 20}, 0.02);
+  scene.liquid.dynamic_viscosity = 0.01;
+  scene.liquid.fill_level = 0.1;
+  scene.liquid.boxes = {Eigen::AlignedBox3d(Vector3d(0.0, 0.0, 0.1), Vector3d(0.1, 0.2, 0.3))};
+  scene.bodies = {fixed(boxBody("wall", {0.08, 0.2, 0.4}, 1000.0, {0.24, 0.1, 0.2}))};
+  Simulation simulation(scene);
+  const double volume = simulation.report().liquid_volume;
+  double corrected = 0.0;
+  while (simulation.time() < 2.0) {
+    const StepReport report = simulation.step();
+    ASSERT_TRUE(report.committed()) << report.message;
+    EXPECT_NEAR(report.liquid_volume, volume, 1e-3 * volume);
+    corrected += std::abs(report.volume_correction);
+  }
+  EXPECT_GT(corrected, 0.01 * volume) << "nothing was lost";
+  double level = 0.0;
+  int points = 0;
+  for (const SurfacePoint& point : simulation.surfacePoints()) {
+    if (point.position[0] < 0.28) continue;
+    level += point.position[2];
+    ++points;
+  }
+  EXPECT_NEAR(level / points, 0.1, 1e-4);
+}
+
 // A jet rises along the far wall and falls back: thin sheets, in which no pressure holds the liquid back.
 TEST(Surface, ADamThatBreaksGainsNoEnergy) {
   for (const double dt : {0.02, 0.005}) {
