@@ -22,6 +22,7 @@ constexpr double kPadding = 4.0;           // resolutions outside the bounding b
 constexpr double kLeastCellsAcross = 8.0;  // of a mesh's thinnest extent ...
 constexpr double kMostSamples = 2e6;       // ... unless that costs more memory than this
 constexpr double kSamplesAtAll = 1e8;      // nor the wanted resolution more than this
+constexpr double kLeastStride = 0.25;      // spacings, along a ray
 
 class GridDistance : public SignedDistance {
  public:
@@ -55,6 +56,24 @@ class GridDistance : public SignedDistance {
     const double baked = extend(interpolate(nearest, nullptr), point - nearest);
     const double box_distance = bounds_.exteriorDistance(point);
     return box_distance > 0.0 ? std::max(box_distance, baked) : baked;
+  }
+
+  // A mesh tells no faces but the nearest: the others are looked for along the axes.
+  void appendFaces(const Vector3d& point, double reach, SolidFaces& faces) const override {
+    SignedDistance::appendFaces(point, reach, faces);
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double side : {-1.0, 1.0}) {
+        const Vector3d direction = side * Vector3d::Unit(axis);
+        double way = 0.0, inside = distance(point);
+        while (inside <= 0.0 && way < reach) {
+          way += std::max(-inside, kLeastStride * spacing_);
+          inside = distance(point + way * direction);
+        }
+        if (inside <= 0.0) continue;
+        const DistanceSample exit = sample(point + way * direction);
+        faces.append(exit.distance - way * exit.gradient.dot(direction), exit.gradient);
+      }
+    }
   }
 
   AlignedBox3d bounds() const override { return bounds_; }

@@ -6,6 +6,7 @@
 #include "geometry/mesh.h"
 #include "geometry/mesh_distance.h"
 #include "geometry/shape_distance.h"
+#include "geometry/union_distance.h"
 
 namespace monolith {
 namespace {
@@ -13,58 +14,6 @@ namespace {
 using Eigen::AlignedBox3d;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
-
-// A distance field placed in another frame. The bounds come from the shape, because the box around a turned box
-// is larger than the one around a turned sphere.
-struct Placed {
-  std::shared_ptr<const SignedDistance> field;
-  Isometry3d X_GB;
-  AlignedBox3d bounds_B;
-
-  DistanceSample sample(const Vector3d& p_B) const {
-    DistanceSample sample = field->sample(X_GB * p_B);
-    sample.gradient = X_GB.linear().transpose() * sample.gradient;
-    return sample;
-  }
-};
-
-class UnionDistance : public SignedDistance {
- public:
-  explicit UnionDistance(std::vector<Placed> parts) : parts_(std::move(parts)) {
-    for (const Placed& part : parts_) bounds_.extend(part.bounds_B);
-  }
-
-  DistanceSample sample(const Vector3d& point) const override {
-    DistanceSample nearest = parts_.front().sample(point);
-    for (std::size_t i = 1; i < parts_.size(); ++i) {
-      if (cannotBeNearer(parts_[i], point, nearest.distance)) continue;
-      const DistanceSample candidate = parts_[i].sample(point);
-      if (candidate.distance < nearest.distance) nearest = candidate;
-    }
-    return nearest;
-  }
-
-  double distance(const Vector3d& point) const override {
-    double nearest = parts_.front().field->distance(parts_.front().X_GB * point);
-    for (std::size_t i = 1; i < parts_.size(); ++i) {
-      if (cannotBeNearer(parts_[i], point, nearest)) continue;
-      nearest = std::min(nearest, parts_[i].field->distance(parts_[i].X_GB * point));
-    }
-    return nearest;
-  }
-
-  AlignedBox3d bounds() const override { return bounds_; }
-
- private:
-  // No field is below the distance to the box around its solid.
-  static bool cannotBeNearer(const Placed& part, const Vector3d& point, double distance) {
-    return distance > 0.0 ? part.bounds_B.squaredExteriorDistance(point) > distance * distance
-                          : !part.bounds_B.contains(point);
-  }
-
-  std::vector<Placed> parts_;
-  AlignedBox3d bounds_;
-};
 
 }  // namespace
 
@@ -85,11 +34,11 @@ std::shared_ptr<const SignedDistance> makeSignedDistance(const std::vector<Shape
   if (shapes.size() == 1 && shapes.front().X_BG.matrix() == identity.matrix()) {
     return makeSignedDistance(shapes.front(), resolution);
   }
-  std::vector<Placed> parts;
+  std::vector<PlacedSolid> parts;
   for (const Shape& shape : shapes) {
     parts.push_back({makeSignedDistance(shape, resolution), shape.X_BG.inverse(), bounds(shape, identity)});
   }
-  return std::make_shared<UnionDistance>(std::move(parts));
+  return makeUnionDistance(std::move(parts), resolution);
 }
 
 double volume(const Shape& shape) {

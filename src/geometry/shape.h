@@ -35,7 +35,7 @@ struct Shape {
 // grid that a mesh is baked into; the other kinds are exact and ignore it.
 std::shared_ptr<const SignedDistance> makeSignedDistance(const Shape& shape, double resolution);
 
-// Distance field of the union of shapes, in the frame of the body.
+// Distance field of the union of shapes, in the frame of the body (geometry/union_distance.h).
 std::shared_ptr<const SignedDistance> makeSignedDistance(const std::vector<Shape>& shapes,
                                                          double resolution);
 

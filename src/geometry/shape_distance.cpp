@@ -35,6 +35,15 @@ class BoxDistance : public SignedDistance {
     return excess.cwiseMax(0.0).norm() + std::min(excess.maxCoeff(), 0.0);
   }
 
+  void appendFaces(const Vector3d& point, double reach, SolidFaces& faces) const override {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double side : {-1.0, 1.0}) {
+        const double distance = side * point[axis] - half_[axis];
+        if (distance >= -reach) faces.append(distance, side * Vector3d::Unit(axis));
+      }
+    }
+  }
+
   AlignedBox3d bounds() const override { return AlignedBox3d(-half_, half_); }
 
  private:
@@ -87,6 +96,14 @@ class CylinderDistance : public SignedDistance {
     const double radial_outside = std::max(radial, 0.0), axial_outside = std::max(axial, 0.0);
     return std::sqrt(radial_outside * radial_outside + axial_outside * axial_outside) +
            std::min(std::max(radial, axial), 0.0);
+  }
+
+  void appendFaces(const Vector3d& point, double /*reach*/, SolidFaces& faces) const override {
+    const double axis_distance = point.head<2>().norm();
+    const Vector3d radial =
+        axis_distance > 0.0 ? Vector3d(point.x() / axis_distance, point.y() / axis_distance, 0.0) : Vector3d::UnitX();
+    faces.append(axis_distance - radius_, radial);
+    for (const double side : {-1.0, 1.0}) faces.append(side * point.z() - half_length_, side * Vector3d::UnitZ());
   }
 
   AlignedBox3d bounds() const override {

@@ -124,6 +124,45 @@ TEST(SolidFractions, HaveTheBodysVolumeAndItsCentreWhereverItLies) {
   }
 }
 
+// What two parts have in common takes no liquid in: a bar cut in two is the bar, face by face.
+TEST(SolidFractions, OfABarCutInTwoAreThoseOfTheBar) {
+  MacGrid grid;
+  grid.lattice = Lattice({24, 16, 16}, {false, false, false});
+  grid.h = 0.1;
+  Shape whole;
+  whole.kind = Shape::Kind::kBox;
+  whole.box_size = {1.2, 0.6, 0.5};
+  for (const double turn : {0.0, 0.5}) {
+    BodyDescription body;
+    body.X_WB =
+        Eigen::Translation3d(1.21, 0.83, 0.79) * Eigen::AngleAxisd(turn, Eigen::Vector3d(1.0, 2.0, 3.0).normalized());
+    std::vector<SolidFractions> solids;
+    for (const int parts : {1, 2}) {
+      body.shapes.clear();
+      for (int part = 0; part < parts; ++part) {
+        Shape shape = whole;
+        shape.box_size[0] /= parts;
+        shape.X_BG.translation()[0] = (part + 0.5) * shape.box_size[0] - 0.5 * whole.box_size[0];
+        body.shapes.push_back(shape);
+      }
+      std::vector<RigidBody> bodies = {makeRigidBody(body, 0.5 * grid.h)};
+      bodies[0].displacement.reset();  // as sampled, not fitted to it
+      SolidSampler(grid).sample(bodies, solids.emplace_back());
+      for (int a = 0; a < 3; ++a) {
+        double sum = 0.0;
+        for (const double part : solids.back().bodies[0].face[a]) sum += part;
+        EXPECT_NEAR(sum * grid.cellVolume() / volume(whole), 1.0, 5e-3) << parts;
+      }
+    }
+    for (int a = 0; a < 3; ++a) {
+      for (std::size_t f = 0; f < grid.lattice.size; ++f) {
+        ASSERT_NEAR(solids[1].fluid[a][f], solids[0].fluid[a][f], 1e-9);
+        ASSERT_NEAR(std::max(solids[1].distance[a][f], -1.5f), std::max(solids[0].distance[a][f], -1.5f), 1e-5f);
+      }
+    }
+  }
+}
+
 // A sampler that has seen bodies before gives what a new one does, but for motions that do not count.
 TEST(SolidFractions, BodiesAreSampledAgainOnceTheyHaveMoved) {
   MacGrid grid;
