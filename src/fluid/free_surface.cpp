@@ -19,8 +19,9 @@ constexpr double kTravelToRedistance = 1.0;  // cells
 constexpr double kLargestShift = 0.1;      // cells in one correction
 constexpr int kCorrections = 8;
 constexpr double kVolumeTolerance = 1e-10;
-// Of cells around a region of liquid that count as its own: those that its surface may cut, and more.
-constexpr int kLayers = 3;
+// A pool has so many whole cells so far below its surface.
+constexpr int kLeastCellsOfPool = 27;
+constexpr double kDeep = 0.5;  // cells
 // Half-width, in cells, of the band around the surface in which the level set is a distance; beyond it is just as large
 // as that, which is further than anyone looks.
 constexpr double kBand = 6.0;
@@ -178,7 +179,7 @@ FreeSurface& FreeSurface::operator=(const FreeSurface& other) {
   empty_ = other.empty_;
   travelled_ = other.travelled_;
   copyField(other.distance_, distance_);
-  regions_ = other.regions_;
+  pools_ = other.pools_;
   return *this;
 }
 
@@ -291,34 +292,46 @@ void FreeSurface::extendIntoSolids(const std::vector<float>& solid_distance) {
   extendIntoHalo(l, distance_);
 }
 
-FreeSurface::Regions FreeSurface::findRegions(const std::vector<double>& cell_fluid,
-                                              const FaceField<double>& open) const {
+// Drops and films are no pools: they count to the pool that is the nearest by the way around solids.
+FreeSurface::Pools FreeSurface::findPools(const std::vector<double>& cell_fluid, const FaceField<double>& open) const {
   const Lattice& l = grid_.lattice;
   std::vector<std::uint8_t> has(l.size);
 #pragma omp parallel for simd schedule(static)
   for (std::size_t c = 0; c < l.size; ++c) has[c] = (distance_[c] < 0.0) & (cell_fluid[c] > 0.0);
   ConnectedRuns runs(l, has, open);
   std::vector<int> region_of;
-  Regions out;
-  out.count = runs.numberRegions(region_of);
-  if (out.count <= 1) return out;
-  out.of.assign(l.size, -1);
+  const int regions = runs.numberRegions(region_of);
+  Pools out;
+  if (regions <= 1) return out;
+  std::vector<int> deep(regions, 0), pool_of(regions, -1);
   runs.forEachRun([&](int run, std::ptrdiff_t begin, std::ptrdiff_t end) {
-    std::fill(out.of.begin() + begin, out.of.begin() + end, region_of[run]);
+    for (auto c = begin; c < end; ++c) deep[region_of[run]] += distance_[c] < -kDeep && cell_fluid[c] == 1.0;
   });
-  std::vector<std::int32_t> inner;
-  for (int layer = 0; layer < kLayers; ++layer) {
-    fillHalo(l, out.of);
-    copyField(out.of, inner);
-#pragma omp parallel for schedule(static, kPlanesInTurn)
-    for (int k = 0; k < l.n[2]; ++k) {
-      for (int j = 0; j < l.n[1]; ++j) {
-        const auto row = l.index(0, j, k);
-        for (auto c = row; c < row + l.n[0]; ++c) {
-          for (int a = 0; a < 3 && out.of[c] < 0; ++a) {
-            out.of[c] = inner[c - l.stride[a]] >= 0 ? inner[c - l.stride[a]] : inner[c + l.stride[a]];
-          }
-        }
+  int pools = 0;
+  for (int region = 0; region < regions; ++region) {
+    if (deep[region] >= kLeastCellsOfPool) pool_of[region] = pools++;
+  }
+  if (pools <= 1) return out;
+  out.count = pools;
+  out.of.assign(l.size, -1);
+  std::vector<std::ptrdiff_t> reached;
+  const auto reach = [&](std::ptrdiff_t cell, int pool) {
+    if (out.of[cell] >= 0) return;
+    out.of[cell] = pool;
+    reached.push_back(cell);
+  };
+  runs.forEachRun([&](int run, std::ptrdiff_t begin, std::ptrdiff_t end) {
+    if (pool_of[region_of[run]] < 0) return;
+    for (auto c = begin; c < end; ++c) reach(c, pool_of[region_of[run]]);
+  });
+  for (std::size_t i = 0; i < reached.size(); ++i) {
+    const auto c = reached[i];
+    const std::array<int, 3> at = l.cell(c);
+    for (int a = 0; a < 3; ++a) {
+      for (const int side : {0, 1}) {
+        const bool ends = at[a] == (side == 0 ? 0 : l.n[a] - 1);
+        if ((ends && !l.periodic[a]) || !(open[a][c + side * l.stride[a]] > 0.0)) continue;
+        reach(c + (side == 0 ? -1 : 1) * (ends ? 1 - l.n[a] : 1) * l.stride[a], out.of[c]);
       }
     }
   }
@@ -327,26 +340,26 @@ FreeSurface::Regions FreeSurface::findRegions(const std::vector<double>& cell_fl
 
 // The cells that the surface cuts when shifted by up to `margin`, plane by plane, and what the others hold.
 FreeSurface::CutCells FreeSurface::findCutCells(double margin, const std::vector<double>& cell_fluid,
-                                                const Regions& regions) const {
+                                                const Pools& pools) const {
   const Lattice& l = grid_.lattice;
   CutCells out(l.n[2]);
 #pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int k = 0; k < l.n[2]; ++k) {
     CutPlane& plane = out[k];
-    plane.full.assign(std::max(regions.count, 1), 0.0);
+    plane.full.assign(pools.count, 0.0);
     for (int j = 0; j < l.n[1]; ++j) {
       const auto row = l.index(0, j, k);
       for (auto c = row; c < row + l.n[0]; ++c) {
         const double d = distance_[c];
         if (d > 1.0 + margin || cell_fluid[c] == 0.0) continue;
-        const int region = regions.of.empty() ? 0 : std::max(regions.of[c], 0);
+        const int pool = pools.of.empty() ? 0 : std::max(pools.of[c], 0);
         if (d <= -1.0 - margin) {
-          plane.full[region] += cell_fluid[c];
+          plane.full[pool] += cell_fluid[c];
           continue;
         }
         Eigen::Vector3d slope;
         for (int a = 0; a < 3; ++a) slope[a] = distance_[c + l.stride[a]] - distance_[c - l.stride[a]];
-        plane.cells.push_back({d, cell_fluid[c], slope, region});
+        plane.cells.push_back({d, cell_fluid[c], slope, pool});
       }
     }
   }
@@ -361,9 +374,9 @@ Eigen::VectorXd FreeSurface::shiftedVolumes(const Eigen::VectorXd& shifts, CutCe
     CutPlane& plane = cut[k];
     plane.sum = plane.full;
     for (const CutCell& cell : plane.cells) {
-      const double d = cell.distance + shifts[cell.region];
+      const double d = cell.distance + shifts[cell.pool];
       if (d > 1.0) continue;
-      plane.sum[cell.region] += (d > -1.0 ? insideFraction(d, cell.slope, 1.0) : 1.0) * cell.fluid;
+      plane.sum[cell.pool] += (d > -1.0 ? insideFraction(d, cell.slope, 1.0) : 1.0) * cell.fluid;
     }
   }
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(shifts.size());
@@ -373,51 +386,17 @@ Eigen::VectorXd FreeSurface::shiftedVolumes(const Eigen::VectorXd& shifts, CutCe
 
 double FreeSurface::volume(const std::vector<double>& cell_fluid) const {
   if (empty_) return 0.0;
-  CutCells cut = findCutCells(0.0, cell_fluid, Regions());
+  CutCells cut = findCutCells(0.0, cell_fluid, Pools());
   return shiftedVolumes(Eigen::VectorXd::Zero(1), cut).sum();
 }
 
-// The region of now that is the nearest to what was `lost` before, by the way around solids; -1: there is none.
-int FreeSurface::nearestRegion(int lost, const Regions& now, const FaceField<double>& open) const {
-  const Lattice& l = grid_.lattice;
-  std::vector<std::ptrdiff_t> reached;
-  std::vector<char> known(l.size, 0);
-  for (int k = 0; k < l.n[2]; ++k) {
-    for (int j = 0; j < l.n[1]; ++j) {
-      const auto row = l.index(0, j, k);
-      for (auto c = row; c < row + l.n[0]; ++c) {
-        if (regions_.of[c] != lost) continue;
-        known[c] = 1;
-        reached.push_back(c);
-      }
-    }
-  }
-  for (std::size_t i = 0; i < reached.size(); ++i) {
-    const auto c = reached[i];
-    if (now.of[c] >= 0) return now.of[c];
-    const std::array<int, 3> at = l.cell(c);
-    for (int a = 0; a < 3; ++a) {
-      for (const int side : {0, 1}) {
-        const bool ends = at[a] == (side == 0 ? 0 : l.n[a] - 1);
-        if ((ends && !l.periodic[a]) || !(open[a][c + side * l.stride[a]] > 0.0)) continue;
-        const auto next = c + (side == 0 ? -1 : 1) * (ends ? 1 - l.n[a] : 1) * l.stride[a];
-        if (known[next]) continue;
-        known[next] = 1;
-        reached.push_back(next);
-      }
-    }
-  }
-  return -1;
-}
-
-// Regions of now that have to do with the same ones of before share their volumes. Returns the group of each region;
-// known: of each group, what its regions of before held, m^3, or -1 if it has none.
-std::vector<int> FreeSurface::groupRegions(const Regions& now, const FaceField<double>& open,
-                                           std::vector<double>& known) const {
+// Pools of now that have to do with the same ones of before share their volumes. Returns the group of each pool; known:
+// of each group, what its pools of before ought to have held, m^3, or -1 if it has none.
+std::vector<int> FreeSurface::groupPools(const Pools& now, std::vector<double>& known) const {
   std::vector<int> group_of(now.count, 0);
   known.assign(1, 0.0);
-  if (now.of.empty() || regions_.of.empty()) return group_of;
-  std::vector<int> parent(now.count + regions_.count);
+  if (now.of.empty() || pools_.of.empty()) return group_of;
+  std::vector<int> parent(now.count + pools_.count);
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&](int i) {
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
@@ -425,32 +404,26 @@ std::vector<int> FreeSurface::groupRegions(const Regions& now, const FaceField<d
   };
   int here = -1, there = -1;  // most cells are of the same two as the one before
   for (std::size_t c = 0; c < now.of.size(); ++c) {
-    if (!(distance_[c] < 0.0) || now.of[c] < 0 || regions_.of[c] < 0) continue;
-    if (now.of[c] == here && regions_.of[c] == there) continue;
+    if (!(distance_[c] < 0.0) || now.of[c] < 0 || pools_.of[c] < 0) continue;
+    if (now.of[c] == here && pools_.of[c] == there) continue;
     here = now.of[c];
-    there = regions_.of[c];
+    there = pools_.of[c];
     const int a = root(here), b = root(now.count + there);
     parent[std::max(a, b)] = std::min(a, b);
   }
   known.clear();
   std::vector<int> number(parent.size(), -1);
-  for (int region = 0; region < now.count; ++region) {
-    int& group = number[root(region)];
+  for (int pool = 0; pool < now.count; ++pool) {
+    int& group = number[root(pool)];
     if (group < 0) {
       group = static_cast<int>(known.size());
       known.push_back(-1.0);
     }
-    group_of[region] = group;
+    group_of[pool] = group;
   }
-  for (int region = 0; region < regions_.count; ++region) {
-    int group = number[root(now.count + region)];
-    if (group < 0) {
-      // A drop that is no more.
-      const int nearest = nearestRegion(region, now, open);
-      if (nearest < 0) continue;
-      group = group_of[nearest];
-    }
-    known[group] = std::max(known[group], 0.0) + regions_.volume[region];
+  for (int pool = 0; pool < pools_.count; ++pool) {
+    const int group = number[root(now.count + pool)];
+    if (group >= 0) known[group] = std::max(known[group], 0.0) + pools_.volume[pool];
   }
   return group_of;
 }
@@ -458,17 +431,16 @@ std::vector<int> FreeSurface::groupRegions(const Regions& now, const FaceField<d
 double FreeSurface::correctVolume(double target, const std::vector<double>& cell_fluid, const FaceField<double>& open) {
   if (full_ || empty_) return 0.0;
   constexpr double kStep = 1e-3;
-  Regions now = findRegions(cell_fluid, open);
-  if (now.count == 0) return 0.0;
+  Pools now = findPools(cell_fluid, open);
   std::vector<double> known;
-  const std::vector<int> group_of = groupRegions(now, open, known);
+  const std::vector<int> group_of = groupPools(now, known);
   const auto groups = static_cast<Eigen::Index>(known.size());
   CutCells cut = findCutCells(kLargestShift + kStep, cell_fluid, now);
-  Eigen::VectorXd by_region;
+  Eigen::VectorXd by_pool;
   const auto volumes = [&](const Eigen::VectorXd& shifts) {
-    by_region = shiftedVolumes(shifts(group_of), cut);
+    by_pool = shiftedVolumes(shifts(group_of), cut);
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(groups);
-    for (int region = 0; region < now.count; ++region) sum[group_of[region]] += by_region[region];
+    for (int pool = 0; pool < now.count; ++pool) sum[group_of[pool]] += by_pool[pool];
     return sum;
   };
   Eigen::VectorXd shift = Eigen::VectorXd::Zero(groups), v = volumes(shift), slope;
@@ -509,20 +481,20 @@ double FreeSurface::correctVolume(double target, const std::vector<double>& cell
     v = volume;
   }
   if (now.count > 1) {
-    // What a drop could not reach it is still owed.
+    // What could not be reached is still owed.
     v = volumes(shift);
-    for (int region = 0; region < now.count; ++region) {
-      const int g = group_of[region];
-      now.volume.push_back(v[g] > 0.0 ? by_region[region] * wanted[g] / v[g] : 0.0);
+    for (int pool = 0; pool < now.count; ++pool) {
+      const int g = group_of[pool];
+      now.volume.push_back(v[g] > 0.0 ? by_pool[pool] * wanted[g] / v[g] : 0.0);
     }
   }
-  regions_ = std::move(now);
+  pools_ = std::move(now);
   if (shift.isZero(0.0)) return 0.0;
-  const bool all = regions_.of.empty();
+  const bool all = pools_.of.empty();
 #pragma omp parallel for simd schedule(static)
   for (std::size_t c = 0; c < distance_.size(); ++c) {
-    const int region = all ? 0 : regions_.of[c];
-    if (region >= 0) distance_[c] += shift[group_of[region]];
+    const int pool = all ? 0 : pools_.of[c];
+    if (pool >= 0) distance_[c] += shift[group_of[pool]];
   }
   if (!all) extendIntoHalo(grid_.lattice, distance_);
   return v.sum() - before;

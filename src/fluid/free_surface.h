@@ -4,9 +4,10 @@
 // 2005, Math. Comput. 74, 603), its cells in two colours.
 //
 // Volume: the level set is shifted, by a fraction of a percent of a cell, to the volume that the liquid has had from
-// the start; how much is reported. Regions of liquid that are not connected keep their own volume each; what detaches
-// and falls below the grid's resolution returns to the nearest. In solids the level set is continued along their
-// normals: the surface meets them at 90 degrees.
+// the start; how much is reported. Pools that are not connected keep their own volume each; what detaches below the
+// grid's resolution returns to the nearest.
+//
+// In solids the level set is continued along their normals: the surface meets them at 90 degrees.
 
 #include <vector>
 
@@ -52,16 +53,16 @@ class FreeSurface {
     double distance = 0.0;
     double fluid = 0.0;
     Eigen::Vector3d slope = Eigen::Vector3d::Zero();
-    int region = 0;
+    int pool = 0;
   };
-  // full, sum: cells, by region: of those that lie in the liquid, and with what the surface cuts.
+  // full, sum: cells, by pool: of those that lie in the liquid, and with what the surface cuts.
   struct CutPlane {
     std::vector<CutCell> cells;
     std::vector<double> full, sum;
   };
   using CutCells = std::vector<CutPlane>;
-  // Regions of liquid; a cell's, also of those around it, or -1. `of` is empty where there is but one.
-  struct Regions {
+  // of: the pool that a cell belongs to, or -1; empty where there is but one.
+  struct Pools {
     int count = 1;
     std::vector<std::int32_t> of;
     std::vector<double> volume;  // m^3, that they ought to have
@@ -76,11 +77,10 @@ class FreeSurface {
   };
 
   void redistance();
-  Regions findRegions(const std::vector<double>& cell_fluid, const FaceField<double>& open) const;
-  CutCells findCutCells(double margin, const std::vector<double>& cell_fluid, const Regions& regions) const;
-  int nearestRegion(int lost, const Regions& now, const FaceField<double>& open) const;
-  std::vector<int> groupRegions(const Regions& now, const FaceField<double>& open, std::vector<double>& known) const;
-  // m^3, of each region, with a shift for each.
+  Pools findPools(const std::vector<double>& cell_fluid, const FaceField<double>& open) const;
+  CutCells findCutCells(double margin, const std::vector<double>& cell_fluid, const Pools& pools) const;
+  std::vector<int> groupPools(const Pools& now, std::vector<double>& known) const;
+  // m^3, of each pool, with a shift for each.
   Eigen::VectorXd shiftedVolumes(const Eigen::VectorXd& shifts, CutCells& cut) const;
 
   MacGrid grid_;
@@ -88,7 +88,7 @@ class FreeSurface {
   bool empty_ = false;
   double travelled_ = 0.0;  // cells, since the distance was last made one
   std::vector<double> distance_;
-  Regions regions_;  // of the last correction
+  Pools pools_;  // of the last correction
   Scratch scratch_;
 };
 
