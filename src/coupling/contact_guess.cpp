@@ -47,22 +47,12 @@ double ContactGuess::closeness(bool rough) const {
 
 void ContactGuess::setResponse(const Eigen::MatrixXd& K) {
   bodies_.K = K;
-  const Eigen::LLT<Eigen::MatrixXd> factor(K);
+  D_ = contactResponse(rows_, K, bodies_.compliance);
   bodies_.K_inverse.resize(0, 0);
-  if (factor.info() == Eigen::Success) {
-    bodies_.K_inverse = factor.solve(Eigen::MatrixXd::Identity(K.rows(), K.cols()));
-  }
-  Eigen::VectorXd compliance;
-  D_ = contactResponse(rows_, K, compliance);
-  setCompliance(compliance);
-}
-
-void ContactGuess::setCompliance(const Eigen::VectorXd& compliance) {
-  const Eigen::Index m = rows_.count();
-  compliance_ = compliance;
-  for (Eigen::Index c = 0; c < m; ++c) {
-    bodies_.contacts[c].compliance << compliance_[c], compliance_.segment<2>(m + 2 * c);
-  }
+  if (K.rows() >= D_.rows()) return;  // the contacts' own equations are fewer
+  const Eigen::LLT<Eigen::MatrixXd> factor(K);
+  if (factor.info() != Eigen::Success) return;
+  bodies_.K_inverse = factor.solve(Eigen::MatrixXd::Identity(K.rows(), K.cols()));
 }
 
 FrictionReport ContactGuess::solveLaw(const Eigen::VectorXd& w0, bool rough, Eigen::VectorXd& r) const {
@@ -103,16 +93,16 @@ void ContactGuess::update(const Eigen::VectorXd& dg, const Eigen::VectorXd& dv) 
   const Eigen::MatrixXd next = bodies_.K + miss * miss.transpose() / curvature;
   if (curvature < 0.0 && Eigen::LLT<Eigen::MatrixXd>(next).info() != Eigen::Success) return;
   // The solution was made with the compliance that the rows had.
-  const Eigen::VectorXd compliance = compliance_;
+  const Eigen::VectorXd compliance = bodies_.compliance;
   setResponse(next);
-  D_.diagonal() += compliance - compliance_;
-  setCompliance(compliance);
+  D_.diagonal() += compliance - bodies_.compliance;
+  bodies_.compliance = compliance;
 }
 
 ContactGuess::Change ContactGuess::proceedFrom(const Eigen::VectorXd& twists, bool rough, CoupledReport& report) {
   const Eigen::VectorXd w = velocities(twists);
   // Shifted so that the small system reproduces this solution exactly.
-  const Eigen::VectorXd w0 = w - D_ * r_ + compliance_.cwiseProduct(r_);
+  const Eigen::VectorXd w0 = w - D_ * r_ + bodies_.compliance.cwiseProduct(r_);
   Eigen::VectorXd next = r_;
   const FrictionReport friction = solveLaw(w0, rough, next);
   report.friction_iterations += friction.iterations;

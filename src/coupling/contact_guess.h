@@ -20,7 +20,7 @@ class ContactGuess {
   static double settledAt(double tolerance);
 
   const ContactStates& states() const { return states_; }
-  const Eigen::VectorXd& compliance() const { return compliance_; }  // of each contact row
+  const Eigen::VectorXd& compliance() const { return bodies_.compliance; }  // of each contact row
   Eigen::VectorXd push() const { return rows_.J.transpose() * r_; }   // on the bodies
 
   void setResponse(const Eigen::MatrixXd& K);
@@ -45,16 +45,14 @@ class ContactGuess {
   Eigen::VectorXd velocities(const Eigen::VectorXd& twists) const { return rows_.J * twists + rows_.bias; }
   double closeness(bool rough) const;
   void update(const Eigen::VectorXd& dg, const Eigen::VectorXd& dv);
-  void setCompliance(const Eigen::VectorXd& compliance);  // what D has
   // Their law, solved from r on.
   FrictionReport solveLaw(const Eigen::VectorXd& w0, bool rough, Eigen::VectorXd& r) const;
 
   const ContactRows& rows_;
   Eigen::VectorXd& r_;
   double tolerance_;
-  BodyResponse bodies_;  // without an inverse where K has none
+  BodyResponse bodies_;  // its inverse only where it serves and there is one
   Eigen::MatrixXd D_;
-  Eigen::VectorXd compliance_;
   ContactStates states_;
   Eigen::VectorXd last_push_, last_twists_;
 };

@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 #include "solve/connected_runs.h"
+#include "solve/disjoint_sets.h"
 
 namespace monolith {
 
@@ -26,19 +26,14 @@ long cellsAtWalls(const Lattice& l, std::ptrdiff_t begin, std::ptrdiff_t end) {
 void findDrifts(const Lattice& l, const BodyRows& rows, const std::vector<char>& moves, const ConnectedRuns& runs,
                 const std::vector<int>& id_of, std::vector<PressureRegion>& regions) {
   // Regions, and behind them free bodies, by what they are joined to.
-  const std::size_t count = regions.size();
-  std::vector<std::size_t> joined(count + moves.size());
-  std::iota(joined.begin(), joined.end(), 0);
-  const auto root = [&](std::size_t i) {
-    while (joined[i] != i) i = joined[i] = joined[joined[i]];
-    return i;
-  };
-  std::vector<long> cells(joined.size(), 0), held(joined.size(), 0);
+  const auto count = static_cast<int>(regions.size());
+  DisjointSets joined(count + static_cast<int>(moves.size()));
+  std::vector<long> cells(joined.count(), 0), held(joined.count(), 0);
   for (const BodyRow& row : rows.divergence) {
     const int run = runs.of(row.sample);
     if (run < 0) continue;
     if (moves[row.body]) {
-      joined[root(count + row.body)] = root(id_of[run]);
+      joined.unite(count + row.body, id_of[run]);
     } else {
       ++held[id_of[run]];
     }
@@ -47,16 +42,16 @@ void findDrifts(const Lattice& l, const BodyRows& rows, const std::vector<char>&
     cells[id_of[run]] += static_cast<long>(end - begin);
     held[id_of[run]] += cellsAtWalls(l, begin, end);
   });
-  for (std::size_t id = 0; id < count; ++id) {
-    const std::size_t to = root(id);
+  for (int id = 0; id < count; ++id) {
+    const int to = joined.root(id);
     if (to == id) continue;
     cells[to] += cells[id];
     held[to] += held[id];
   }
-  std::vector<int> drift(joined.size(), -1);
+  std::vector<int> drift(joined.count(), -1);
   int drifts = 0;
-  for (std::size_t id = 0; id < count; ++id) {
-    const std::size_t to = root(id);
+  for (int id = 0; id < count; ++id) {
+    const int to = joined.root(id);
     // As much as half the base of a cube.
     const double little = 0.5 * std::pow(static_cast<double>(cells[to]), 2.0 / 3.0);
     if (static_cast<double>(held[to]) >= little) continue;

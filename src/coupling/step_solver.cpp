@@ -14,8 +14,9 @@ void addCompliance(const ContactRows& contacts, Eigen::MatrixXd& response, Eigen
   const auto pairOf = [&](Eigen::Index row) { return contacts.pair[row < m ? row : (row - m) / 2]; };
   for (Eigen::Index i = 0; i < response.rows(); ++i) largest[pairOf(i)] = std::max(largest[pairOf(i)], response(i, i));
   compliance.resize(response.rows());
-  for (Eigen::Index i = 0; i < response.rows(); ++i)
+  for (Eigen::Index i = 0; i < response.rows(); ++i) {
     compliance[i] = kContactCompliance * contacts.softness[i] * largest[pairOf(i)];
+  }
   response.diagonal() += compliance;
 }
 

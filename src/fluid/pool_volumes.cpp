@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "fluid/free_surface.h"
 #include "geometry/cube_fraction.h"
 #include "solve/connected_runs.h"
+#include "solve/disjoint_sets.h"
 
 namespace monolith {
 namespace {
@@ -18,6 +18,12 @@ constexpr double kVolumeTolerance = 1e-10;
 // A pool has so many whole cells so far below its surface.
 constexpr int kLeastCellsOfPool = 27;
 constexpr double kDeep = 0.5;  // cells
+
+// Of a cell.
+double partInLiquid(double distance, const Eigen::Vector3d& slope) {
+  if (distance > 1.0) return 0.0;
+  return distance > -1.0 ? insideFraction(distance, slope, 1.0) : 1.0;
+}
 
 }  // namespace
 
@@ -81,13 +87,19 @@ FreeSurface::CutCells FreeSurface::findCutCells(double margin, const std::vector
       for (auto c = row; c < row + l.n[0]; ++c) {
         const double d = distance_[c];
         if (d > 1.0 + margin || cell_fluid[c] == 0.0) continue;
-        const int pool = pools.of.empty() ? 0 : std::max(pools.of[c], 0);
+        const int pool = pools.of.empty() ? 0 : pools.of[c];
+        // What no pool is within reach of is not shifted, and in the first one's account.
+        double& full = plane.full[std::max(pool, 0)];
         if (d <= -1.0 - margin) {
-          plane.full[pool] += cell_fluid[c];
+          full += cell_fluid[c];
           continue;
         }
         Eigen::Vector3d slope;
         for (int a = 0; a < 3; ++a) slope[a] = distance_[c + l.stride[a]] - distance_[c - l.stride[a]];
+        if (pool < 0) {
+          full += partInLiquid(d, slope) * cell_fluid[c];
+          continue;
+        }
         plane.cells.push_back({d, cell_fluid[c], slope, pool});
       }
     }
@@ -103,9 +115,7 @@ Eigen::VectorXd FreeSurface::shiftedVolumes(const Eigen::VectorXd& shifts, CutCe
     CutPlane& plane = cut[k];
     plane.sum = plane.full;
     for (const CutCell& cell : plane.cells) {
-      const double d = cell.distance + shifts[cell.pool];
-      if (d > 1.0) continue;
-      plane.sum[cell.pool] += (d > -1.0 ? insideFraction(d, cell.slope, 1.0) : 1.0) * cell.fluid;
+      plane.sum[cell.pool] += partInLiquid(cell.distance + shifts[cell.pool], cell.slope) * cell.fluid;
     }
   }
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(shifts.size());
@@ -125,25 +135,19 @@ std::vector<int> FreeSurface::groupPools(const Pools& now, std::vector<double>& 
   std::vector<int> group_of(now.count, 0);
   known.assign(1, 0.0);
   if (now.of.empty() || pools_.of.empty()) return group_of;
-  std::vector<int> parent(now.count + pools_.count);
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
+  DisjointSets joined(now.count + pools_.count);  // pools of now, and behind them those of before
   int here = -1, there = -1;  // most cells are of the same two as the one before
   for (std::size_t c = 0; c < now.of.size(); ++c) {
     if (!(distance_[c] < 0.0) || now.of[c] < 0 || pools_.of[c] < 0) continue;
     if (now.of[c] == here && pools_.of[c] == there) continue;
     here = now.of[c];
     there = pools_.of[c];
-    const int a = root(here), b = root(now.count + there);
-    parent[std::max(a, b)] = std::min(a, b);
+    joined.unite(here, now.count + there);
   }
   known.clear();
-  std::vector<int> number(parent.size(), -1);
+  std::vector<int> number(joined.count(), -1);
   for (int pool = 0; pool < now.count; ++pool) {
-    int& group = number[root(pool)];
+    int& group = number[joined.root(pool)];
     if (group < 0) {
       group = static_cast<int>(known.size());
       known.push_back(-1.0);
@@ -151,7 +155,7 @@ std::vector<int> FreeSurface::groupPools(const Pools& now, std::vector<double>& 
     group_of[pool] = group;
   }
   for (int pool = 0; pool < pools_.count; ++pool) {
-    const int group = number[root(now.count + pool)];
+    const int group = number[joined.root(now.count + pool)];
     if (group >= 0) known[group] = std::max(known[group], 0.0) + pools_.volume[pool];
   }
   return group_of;

@@ -20,17 +20,16 @@ ConnectedRuns::ConnectedRuns(const Lattice& lattice, const std::vector<std::uint
     : l_(lattice) {
   const Cells cells{has, open};
   const std::vector<int> first = number(cells);
-  parent_.resize(first.back());
-  std::iota(parent_.begin(), parent_.end(), 0);
-  open_to_others_.assign(parent_.size(), 0);
+  sets_ = DisjointSets(first.back());
+  open_to_others_.assign(sets_.count(), 0);
   join(cells);
 }
 
 int ConnectedRuns::numberRegions(std::vector<int>& region_of) {
-  region_of.assign(parent_.size(), -1);
+  region_of.assign(count(), -1);
   int regions = 0;
   for (int run = 0; run < count(); ++run) {
-    const int first = root(run);
+    const int first = sets_.root(run);
     if (region_of[first] < 0) region_of[first] = regions++;
     region_of[run] = region_of[first];
   }
@@ -91,7 +90,7 @@ void ConnectedRuns::join(const Cells& cells) {
       if (there == kToOthers) {
         open_to_others_[here] = 1;
       } else {
-        unite(here, there);
+        sets_.unite(here, there);
       }
     }
   }
@@ -130,12 +129,6 @@ void ConnectedRuns::findJointsAlong(const Cells& cells, std::ptrdiff_t row, int 
     if (i == 0 && side == 0 && l_.periodic[0]) other += l_.n[0];
     addJoint(of_[row + i], of_[other], cells.open[0][row + i + to_face], out);
   }
-}
-
-void ConnectedRuns::unite(int a, int b) {
-  a = root(a);
-  b = root(b);
-  parent_[std::max(a, b)] = std::min(a, b);
 }
 
 }  // namespace monolith

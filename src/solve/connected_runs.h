@@ -1,6 +1,6 @@
 #pragma once
-// Cells that are connected through open faces, as runs along x that are joined across the faces between rows
-// (union-find). What every row needs is found by all threads; numbers and joints are in the order of the rows.
+// Cells that are connected through open faces, as runs along x that are joined across the faces between rows. What
+// every row needs is found by all threads; numbers and joints are in the order of the rows.
 
 #include <Eigen/Core>
 #include <array>
@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "solve/disjoint_sets.h"
 #include "solve/lattice.h"
 #include "solve/staggered_operator.h"
 
@@ -18,17 +19,12 @@ class ConnectedRuns {
   // Of the cells where `has` is not 0, through faces where `open` is more than 0. They must outlive the constructor.
   ConnectedRuns(const Lattice& lattice, const std::vector<std::uint8_t>& has, const FaceField<double>& open);
 
-  int count() const { return static_cast<int>(parent_.size()); }
+  int count() const { return sets_.count(); }
   // The run of a cell; -1: it is none of them.
   int of(std::ptrdiff_t cell) const { return of_[cell]; }
   // Whether a face leads from it to a cell that is none of them.
   bool openToOthers(int run) const { return open_to_others_[run] != 0; }
-  // The first run of a region stands for it: regions are numbered in the order of their first cells.
-  int root(int run) {
-    while (parent_[run] != run) run = parent_[run] = parent_[parent_[run]];
-    return run;
-  }
-  // Of each run the number of its region; returns how many there are.
+  // Of each run the number of its region, in the order of their first cells; returns how many there are.
   int numberRegions(std::vector<int>& region_of);
   // f(run, begin, end), in the order of the cells.
   template <class Function>
@@ -70,11 +66,10 @@ class ConnectedRuns {
   // Within a row; its ends are next to each other where the axis is periodic.
   void findJointsAlong(const Cells& cells, std::ptrdiff_t row, int side, std::ptrdiff_t to_face,
                        std::vector<Joint>& out) const;
-  void unite(int a, int b);
 
   Lattice l_;
   Eigen::ArrayXi of_;  // resized, it is not written by one thread first
-  std::vector<int> parent_;
+  DisjointSets sets_;
   std::vector<char> open_to_others_;
   std::vector<RowKind> kind_;  // of every row of the lattice
 };

@@ -35,12 +35,17 @@ void ContactSystem::setDense() {
   factor_.compute(A);
 }
 
+Eigen::Vector3d ContactSystem::compliance(Eigen::Index c) const {
+  const Eigen::VectorXd& all = problem_.bodies->compliance;
+  return {all[problem_.entry(c, 0)], all[problem_.entry(c, 1)], all[problem_.entry(c, 2)]};
+}
+
 void ContactSystem::setByBodies() {
   const BodyResponse& bodies = *problem_.bodies;
   Eigen::MatrixXd G = bodies.K_inverse;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const BodyResponse::Contact& contact = bodies.contacts[contacts_[i]];
-    const Eigen::Matrix3d M = turn_[i] * contact.compliance.asDiagonal() + own_[i];
+    const Eigen::Matrix3d M = turn_[i] * compliance(contacts_[i]).asDiagonal() + own_[i];
     inverse_.push_back(M.inverse());
     const Eigen::Matrix3d moved = inverse_.back() * turn_[i];
     for (const auto& [row, J_row] : contact.of) {
@@ -78,7 +83,7 @@ Eigen::VectorXd ContactSystem::residual(const Eigen::VectorXd& b, const Eigen::V
     const auto at = static_cast<Eigen::Index>(3 * i);
     const BodyResponse::Contact& contact = bodies.contacts[contacts_[i]];
     const Eigen::Vector3d own = d.segment<3>(at);
-    const Eigen::Vector3d velocity = contact.velocity(moved) + contact.compliance.cwiseProduct(own);
+    const Eigen::Vector3d velocity = contact.velocity(moved) + compliance(contacts_[i]).cwiseProduct(own);
     out.segment<3>(at) -= turn_[i] * velocity + own_[i] * own;
   }
   return out;

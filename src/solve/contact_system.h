@@ -30,6 +30,7 @@ class ContactSystem {
   void setDense();
   void setByBodies();
   Eigen::VectorXd solveByBodies(const Eigen::VectorXd& b) const;
+  Eigen::Vector3d compliance(Eigen::Index c) const;
   // b less what d makes of it.
   Eigen::VectorXd residual(const Eigen::VectorXd& b, const Eigen::VectorXd& d) const;
 

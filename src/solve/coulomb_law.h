@@ -21,7 +21,6 @@ struct BodyResponse {
   struct Contact {
     // Its rows of J, the normal's first, for each of the bodies that it moves; with that body's first unknown.
     std::vector<std::pair<Eigen::Index, Eigen::Matrix<double, 3, 6>>> of;
-    Eigen::Vector3d compliance;
 
     Eigen::Vector3d velocity(const Eigen::VectorXd& twists) const {
       Eigen::Vector3d out = Eigen::Vector3d::Zero();
@@ -34,6 +33,7 @@ struct BodyResponse {
   };
   std::vector<Contact> contacts;
   Eigen::MatrixXd K, K_inverse;
+  Eigen::VectorXd compliance;  // in the order of r
 };
 
 struct FrictionProblem {

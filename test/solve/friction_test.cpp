@@ -177,9 +177,9 @@ struct Heap {
     D.diagonal().array() += compliance;
     response.K = K;
     response.K_inverse = K.diagonal().cwiseInverse().asDiagonal();
+    response.compliance = Eigen::VectorXd::Constant(3 * m, compliance);
     response.contacts.resize(m);
     for (Eigen::Index c = 0; c < m; ++c) {
-      response.contacts[c].compliance.setConstant(compliance);
       for (Eigen::Index first = 0; first < 6 * bodies; first += 6) {
         Eigen::Matrix<double, 3, 6> rows;
         rows << J.block<1, 6>(c, first), J.block<2, 6>(m + 2 * c, first);
