@@ -1,6 +1,6 @@
 #pragma once
 // Newton's method on Coulomb's law, r = P(r - w/D_cc) (Alart & Curnier 1991, Comput. Methods Appl. Mech. Eng. 92, 353):
-// undamped, it polishes what is nearly right, though on its way it may be far off. Where the law has more than one answer, it stays with the nearest.
+// undamped, it polishes what is nearly right, though on its way it may be far off.
 
 #include "solve/coulomb_law.h"
 

@@ -91,7 +91,8 @@ TEST(FreeSurface, CorrectionReachesTheTargetAndSaysByHowMuch) {
   EXPECT_NEAR(added, 0.0001, 1e-9);
 }
 
-// Two pools with a wall between them, and a drop above the left one, whose liquid is made to grow.
+// Two pools with a wall between them, a film in a chamber of that wall, and a drop above the left pool, whose liquid is
+// made to grow.
 TEST(FreeSurface, PoolsThatAreApartKeepTheirVolumes) {
   const MacGrid grid{Lattice({16, 8, 16}, {false, false, false}), 0.1, Eigen::Vector3d::Zero()};
   const Lattice& l = grid.lattice;
@@ -105,13 +106,17 @@ TEST(FreeSurface, PoolsThatAreApartKeepTheirVolumes) {
         fluid[c] = 0.0;
         for (int a = 0; a < 3; ++a) open[a][c] = open[a][c + l.stride[a]] = 0.0;
       }
-      for (int i = 0; i < 8; ++i) velocity[2][l.index(i, j, k)] = 0.1;
+      for (int i = 7; i < 9; ++i) fluid[l.index(i, j, k)] = 1.0;
+      for (int a = 0; a < 3; ++a) open[a][l.index(8, j, k)] = 1.0;
+      for (int i = 0; i < 7; ++i) velocity[2][l.index(i, j, k)] = 0.1;
     }
   }
   const auto box = [](double x0, double x1, double z0, double z1) {
     return Eigen::AlignedBox3d(Eigen::Vector3d(x0, 0.0, z0), Eigen::Vector3d(x1, 0.8, z1));
   };
-  FreeSurface surface(grid, 0.0, {box(0.0, 0.6, 0.0, 0.43), box(1.0, 1.6, 0.0, 0.72), box(0.1, 0.5, 0.9, 1.3)});
+  FreeSurface surface(
+      grid, 0.0,
+      {box(0.0, 0.6, 0.0, 0.43), box(1.0, 1.6, 0.0, 0.72), box(0.1, 0.5, 0.9, 1.3), box(0.7, 0.9, 0.0, 0.07)});
   const double target = surface.volume(fluid);
   surface.correctVolume(target, fluid, open);
   const FreeSurface before = surface;
