@@ -82,7 +82,8 @@ void StepProblem::forget() {
 
 void StepProblem::assembleFitted(SolidFractions& solids, const std::vector<double>& liquid_distance, bool rates) {
   const bool sticks = viscous_number > 0.0 && viscous_number * impulse_scale >= sticking_viscosity * dt * grid.h;
-  if (sticks) stuck_inertia = attachStickingLiquid(grid, *bodies, liquid_distance, solids);
+  stuck_inertia = sticks ? attachStickingLiquid(grid, *bodies, liquid_distance, solids)
+                         : closeThinWalls(grid, *bodies, liquid_distance, solids);
   const StokesGeometry geometry{&solids.fluid, &solids.distance, &liquid_distance, &solids.cell_distance};
   const RowKinds found = findRowKinds(grid.lattice, solids.bodies, liquid_distance);
   if (rates) {

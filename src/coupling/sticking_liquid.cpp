@@ -41,6 +41,30 @@ bool isClear(const Lattice& l, int axis, int at) {
   return l.periodic[axis] || (at >= kBesideWall && at < l.n[axis] - kBesideWall);
 }
 
+// Makes the parts, of which nothing is left in the liquid, the bodies'. Returns the inertia of their liquid.
+std::vector<Matrix6d> giveToBodies(const MacGrid& grid, const std::vector<RigidBody>& bodies,
+                                   const std::vector<double>& liquid_distance, const std::vector<StickingPart>& parts,
+                                   SolidFractions& solids) {
+  const Lattice& l = grid.lattice;
+  std::vector<Matrix6d> inertia(bodies.size(), Matrix6d::Zero());
+  for (const auto& [a, f, body, part] : parts) {
+    if (body < 0) continue;
+    BodyFractions& fractions = solids.bodies[body];
+    std::array<int, 3> local;
+    if (!localCell(l, fractions, l.cell(f), local)) continue;
+    fractions.face[a][fractions.local(local[0], local[1], local[2])] += part;
+    const double mass = part * liquidPart(liquid_distance[f - l.stride[a]], liquid_distance[f]);
+    if (mass == 0.0) continue;
+    // In the image next to the body.
+    const Eigen::Vector3d x =
+        grid.faceCenter(a, fractions.low[0] + local[0], fractions.low[1] + local[1], fractions.low[2] + local[2]);
+    const Vector6d row = velocityRow(a, x, bodies[body].p_WBcm);
+    inertia[body] += mass * row * row.transpose();
+  }
+  for (auto& field : solids.fluid) fillHalo(l, field);
+  return inertia;
+}
+
 }  // namespace
 
 double stickingViscosity(double density, const Eigen::Vector3d& gravity, double cell_width) {
@@ -104,23 +128,23 @@ std::vector<Matrix6d> attachStickingLiquid(const MacGrid& grid, const std::vecto
   std::vector<StickingPart> parts;
   for (const auto& plane : found) parts.insert(parts.end(), plane.begin(), plane.end());
   reopenNarrowGaps(l, solids.fluid, parts);
-  std::vector<Matrix6d> inertia(bodies.size(), Matrix6d::Zero());
-  for (const auto& [a, f, body, part] : parts) {
-    if (body < 0) continue;
-    BodyFractions& fractions = solids.bodies[body];
-    std::array<int, 3> local;
-    if (!localCell(l, fractions, l.cell(f), local)) continue;
-    fractions.face[a][fractions.local(local[0], local[1], local[2])] += part;
-    const double mass = part * liquidPart(liquid_distance[f - l.stride[a]], liquid_distance[f]);
-    if (mass == 0.0) continue;
-    // In the image next to the body.
-    const Eigen::Vector3d x =
-        grid.faceCenter(a, fractions.low[0] + local[0], fractions.low[1] + local[1], fractions.low[2] + local[2]);
-    const Vector6d row = velocityRow(a, x, bodies[body].p_WBcm);
-    inertia[body] += mass * row * row.transpose();
+  return giveToBodies(grid, bodies, liquid_distance, parts, solids);
+}
+
+std::vector<Matrix6d> closeThinWalls(const MacGrid& grid, const std::vector<RigidBody>& bodies,
+                                     const std::vector<double>& liquid_distance, SolidFractions& solids) {
+  std::vector<StickingPart> parts;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const int body = static_cast<int>(b);
+    for (const ThinPart& thin : solids.bodies[b].thin) {
+      double& fluid = solids.fluid[thin.axis][thin.face];
+      if (!(fluid > 0.0) || solids.owner[thin.axis][thin.face] != body) continue;
+      parts.push_back({thin.axis, thin.face, body, fluid});
+      fluid = 0.0;
+    }
   }
-  for (auto& field : solids.fluid) fillHalo(l, field);
-  return inertia;
+  return parts.empty() ? std::vector<Matrix6d>(bodies.size(), Matrix6d::Zero())
+                       : giveToBodies(grid, bodies, liquid_distance, parts, solids);
 }
 
 }  // namespace monolith

@@ -16,6 +16,11 @@ constexpr double kTravelToRedistance = 1.0;  // cells
 // as that, which is further than anyone looks.
 constexpr double kBand = 6.0;
 constexpr double kLongestWay = kBand - 1.0;  // cells in one advection, kTravelToRedistance being undone before the next
+// Cells: a box of liquid whose face is so far within a solid or before it ends at the solid.
+constexpr double kDeepestFace = 0.5, kFarthestFace = 0.01;
+constexpr int kThickestWall = 5;             // cells: what is thicker is a body, whose sides are the same surface
+constexpr int kWayAround = 3;                // cells: so near to its edge a wall does not divide
+constexpr double kClearSlope = 1.0;          // of the distance from a solid, over two cells: half of what it is
 constexpr double kSampleBeyondSolid = 0.75;  // cells: outside, where the value is the liquid's own
 constexpr double kSlopeBeyondFoot = 1.0;     // cells: further out, where the slope is
 
@@ -90,33 +95,100 @@ class RowRanges {
   std::vector<Range> ranges_;
 };
 
+// Where solids are, for a surface that ends at them.
+class SolidCells {
+ public:
+  // solid_distance at cells; empty: no solids.
+  SolidCells(const Lattice& l, const std::vector<float>& solid_distance) : l_(l), distance_(solid_distance) {}
+
+  // The tank's own walls are solid all the way.
+  bool isSolid(std::array<int, 3> cell, int axis = 0, int steps = 0) const {
+    if (distance_.empty()) return false;
+    if (isBeyondTank(cell, axis, steps)) return true;
+    cell[axis] = wrapped(axis, cell[axis] + steps);
+    return distance_[l_.index(cell[0], cell[1], cell[2])] <= 0.0F;
+  }
+
+  // Whether a cell and its neighbour lie in a wall, or one of them in a wall one cell thick, around which it is far
+  // from one side to the other.
+  bool areApart(const std::array<int, 3>& cell, int axis, int side) const {
+    if (distance_.empty() || !(isSolid(cell) || isSolid(cell, axis, side))) return false;
+    // Of the last cell before the wall and the first behind it, along the axis.
+    int low = std::min(0, side), high = std::max(0, side);
+    while (isSolid(cell, axis, low)) {
+      if (high - --low > kThickestWall + 1 || isBeyondTank(cell, axis, low)) return false;
+    }
+    while (isSolid(cell, axis, high)) {
+      if (++high - low > kThickestWall + 1 || isBeyondTank(cell, axis, high)) return false;
+    }
+    for (int b = 0; b < 3; ++b) {
+      for (int away = -kWayAround; away <= kWayAround; ++away) {
+        if (b == axis || away == 0 || isBeyondTank(cell, b, away)) continue;
+        std::array<int, 3> beside = cell;
+        beside[b] = wrapped(b, cell[b] + away);
+        bool open = true;
+        for (int at = low; at <= high && open; ++at) open = !isSolid(beside, axis, at);
+        if (open) return false;
+      }
+    }
+    return true;
+  }
+
+ private:
+  bool isBeyondTank(const std::array<int, 3>& cell, int axis, int steps) const {
+    const int at = cell[axis] + steps;
+    return !l_.periodic[axis] && (at < 0 || at >= l_.n[axis]);
+  }
+  int wrapped(int axis, int at) const { return (at % l_.n[axis] + l_.n[axis]) % l_.n[axis]; }
+
+  const Lattice& l_;
+  const std::vector<float>& distance_;
+};
+
+// How near to the surface a cell is. kNextAtSolid: its neighbour across is solid, or it is.
+enum Nearness : std::uint8_t { kAway, kNext, kNextAtSolid };
+
 }  // namespace
 
-FreeSurface::FreeSurface(const MacGrid& grid, double fill_height, const std::vector<Eigen::AlignedBox3d>& boxes)
+FreeSurface::FreeSurface(const MacGrid& grid, double fill_height, const std::vector<Eigen::AlignedBox3d>& boxes,
+                         const std::function<double(const Eigen::Vector3d&)>& solid_distance)
     : grid_(grid) {
   const Lattice& l = grid.lattice;
   distance_.assign(l.size, kFar);
   const double top = grid.size()[2];
   const bool by_level = fill_height > 0.0;
-  std::vector<Eigen::AlignedBox3d> all = boxes;
+  struct Filled {
+    Eigen::AlignedBox3d box;
+    bool by_level;
+  };
+  std::vector<Filled> all;
+  for (const Eigen::AlignedBox3d& box : boxes) all.push_back({box, false});
   if (by_level) {
-    all.emplace_back(grid.origin, grid.origin + Eigen::Vector3d(grid.size()[0], grid.size()[1], fill_height));
+    const Eigen::Vector3d top_corner(grid.size()[0], grid.size()[1], fill_height);
+    all.push_back({Eigen::AlignedBox3d(grid.origin, grid.origin + top_corner), true});
   }
   // With the periodic images next to the tank.
   for (int a = 0; a < 3; ++a) {
     if (!l.periodic[a]) continue;
     const Eigen::Vector3d period = grid.size()[a] * Eigen::Vector3d::Unit(a);
     for (std::size_t box = 0, own = all.size(); box < own; ++box) {
-      all.push_back(all[box].translated(-period));
-      all.push_back(all[box].translated(period));
+      for (const Eigen::Vector3d& shift : {Eigen::Vector3d(-period), period}) {
+        all.push_back({all[box].box.translated(shift), all[box].by_level});
+      }
     }
   }
   const auto isCovered = [&](const Eigen::Vector3d& x) {
-    return std::any_of(all.begin(), all.end(), [&](const auto& box) { return box.contains(x); });
+    return std::any_of(all.begin(), all.end(), [&](const Filled& filled) { return filled.box.contains(x); });
   };
-  // A box's faces on the tank's walls do not bound the liquid, what is beyond them never counts; nor do its faces where they
-  // meet other liquid.
-  const auto boxDistance = [&](const Eigen::Vector3d& x, const Eigen::AlignedBox3d& box, bool within) {
+  const auto onSolid = [&](const Eigen::Vector3d& x) {
+    if (!solid_distance) return false;
+    const double distance = solid_distance(x);
+    return distance > -kDeepestFace && distance < kFarthestFace;
+  };
+  // A box's faces on the tank's walls do not bound the liquid, what is beyond them never counts; nor do its faces where
+  // they meet other liquid or lie on a solid.
+  const auto boxDistance = [&](const Eigen::Vector3d& x, const Filled& filled, bool within) {
+    const Eigen::AlignedBox3d& box = filled.box;
     const double nudge = 1e-9 * grid.h;
     Eigen::Vector3d outside = Eigen::Vector3d::Zero();
     double inside = -kFar;
@@ -127,21 +199,25 @@ FreeSurface::FreeSurface(const MacGrid& grid, double fill_height, const std::vec
         if (!l.periodic[a] && side * (wall - at) <= nudge) continue;
         Eigen::Vector3d foot = x;
         foot[a] = at + side * nudge;
-        if (within && isCovered(foot)) continue;
+        if (within && (isCovered(foot) || (!filled.by_level && onSolid(foot)))) continue;
         const double d = side * (x[a] - at) / grid.h;
         outside[a] = std::max(outside[a], d);
         inside = std::max(inside, d);
       }
     }
-    return within ? inside : outside.norm();
+    if (within) return inside;
+    const Eigen::Vector3d nearest = x.cwiseMax(box.min()).cwiseMin(box.max());
+    const bool behind_wall = !filled.by_level && onSolid(nearest) && solid_distance(x) > 0.0;
+    return behind_wall ? kBand : outside.norm();
   };
   // Each of the faces is at most as near as the surface: the nearest counts, of the boxes around a point or, outside, of
   // all.
   const auto unionDistance = [&](const Eigen::Vector3d& x) {
     double in = -kFar, out = kFar;
-    for (const auto& box : all) {
-      const bool within = box.contains(x);
-      (within ? in : out) = within ? std::max(in, boxDistance(x, box, true)) : std::min(out, boxDistance(x, box, false));
+    for (const Filled& filled : all) {
+      const bool within = filled.box.contains(x);
+      const double d = boxDistance(x, filled, within);
+      (within ? in : out) = within ? std::max(in, d) : std::min(out, d);
     }
     return in > -kFar ? in : isCovered(x) ? -kBand : out;
   };
@@ -173,7 +249,8 @@ FreeSurface& FreeSurface::operator=(const FreeSurface& other) {
   return *this;
 }
 
-void FreeSurface::advect(const FaceField<double>& velocity, double dt, double maximum_speed) {
+void FreeSurface::advect(const FaceField<double>& velocity, double dt, double maximum_speed,
+                         const std::vector<float>& solid_distance) {
   if (full_ || empty_ || maximum_speed == 0.0) return;
   // Only in the band does the level set tell where the surface is: a way that is longer is gone in parts, but not in
   // more than lead through the whole tank.
@@ -185,46 +262,82 @@ void FreeSurface::advect(const FaceField<double>& velocity, double dt, double ma
     distance_.swap(scratch_.field);
     extendIntoHalo(grid_.lattice, distance_);
     travelled_ += cells / parts;
-    if (travelled_ > kTravelToRedistance) redistance();
+    if (travelled_ > kTravelToRedistance) redistance(solid_distance);
   }
 }
 
-void FreeSurface::redistance() {
+void FreeSurface::redistance(const std::vector<float>& solid_distance) {
   travelled_ = 0.0;
   const Lattice& l = grid_.lattice;
+  const SolidCells solids(l, solid_distance);
   std::vector<double>& next = scratch_.field;
   assignField(l.size, kFar, next);
   std::vector<std::uint8_t>& fixed = scratch_.fixed;
   assignZero(l.size, fixed);
   RowRanges ranges(l);
-  // Next to the surface: the distance to the plane that the level set is there.
+  const auto forEachCell = [&](auto&& f) {
 #pragma omp parallel for schedule(static, kPlanesInTurn)
-  for (int k = 0; k < l.n[2]; ++k) {
-    for (int j = 0; j < l.n[1]; ++j) {
-      for (int i = 0; i < l.n[0]; ++i) {
-        const auto c = l.index(i, j, k);
-        const double d = distance_[c];
-        bool near = false;
-        double slope2 = 0.0;
-        for (int a = 0; a < 3; ++a) {
-          const double low = distance_[c - l.stride[a]];
-          const double high = distance_[c + l.stride[a]];
-          const bool cut_low = (d < 0.0) != (low < 0.0);
-          const bool cut_high = (d < 0.0) != (high < 0.0);
-          near = near || cut_low || cut_high;
-          // Across the surface where it is; central elsewhere.
-          double slope = 0.5 * (high - low);
-          if (cut_low && !cut_high) slope = d - low;
-          if (cut_high && !cut_low) slope = high - d;
-          // A bubble or drop of one cell: its two sides cancel in the central difference.
-          if (cut_low && cut_high) slope = std::max(std::abs(d - low), std::abs(high - d));
-          slope2 += slope * slope;
-        }
-        if (!near) continue;
-        next[c] = std::abs(d) / std::max(std::sqrt(slope2), 0.1);
-        fixed[c] = 1;
-        ranges.at(j, k).least = std::min(ranges.at(j, k).least, next[c]);
+    for (int k = 0; k < l.n[2]; ++k) {
+      for (int j = 0; j < l.n[1]; ++j) {
+        for (int i = 0; i < l.n[0]; ++i) f(l.index(i, j, k), std::array<int, 3>{i, j, k});
       }
+    }
+  };
+  // Next to the surface: the distance to the plane that the level set is there.
+  forEachCell([&](std::ptrdiff_t c, const std::array<int, 3>& cell) {
+    const double d = distance_[c];
+    Nearness nearness = kAway;
+    double slope2 = 0.0;
+    for (int a = 0; a < 3; ++a) {
+      const double values[2] = {distance_[c - l.stride[a]], distance_[c + l.stride[a]]};
+      bool cut[2] = {false, false}, wall[2] = {false, false};
+      for (const int high : {0, 1}) {
+        if ((d < 0.0) == (values[high] < 0.0)) continue;
+        const int side = high == 1 ? 1 : -1;
+        wall[high] = solids.areApart(cell, a, side);
+        cut[high] = !wall[high];
+        if (!cut[high] || nearness == kNext) continue;
+        nearness = solids.isSolid(cell) || solids.isSolid(cell, a, side) ? kNextAtSolid : kNext;
+      }
+      const double below = wall[0] ? 0.0 : d - values[0], above = wall[1] ? 0.0 : values[1] - d;
+      // Across the surface where it is; central elsewhere.
+      double slope = wall[0] || wall[1] ? below + above : 0.5 * (values[1] - values[0]);
+      if (cut[0] && !cut[1]) slope = below;
+      if (cut[1] && !cut[0]) slope = above;
+      // A bubble or drop of one cell: its two sides cancel in the central difference.
+      if (cut[0] && cut[1]) slope = std::max(std::abs(below), std::abs(above));
+      slope2 += slope * slope;
+    }
+    if (nearness == kAway) return;
+    next[c] = std::abs(d) / std::max(std::sqrt(slope2), 0.1);
+    fixed[c] = nearness;
+  });
+  // What lies between liquid and a solid alone, or air and a solid, is no surface but a film thinner than half a cell,
+  // with no velocity of its own: it counts only where the surface ends at the solid.
+  const auto isNext = [&](std::array<int, 3> cell, int axis, int side) {
+    cell[axis] += side;
+    if (cell[axis] < 0 || cell[axis] >= l.n[axis]) {
+      if (!l.periodic[axis]) return false;
+      cell[axis] = (cell[axis] + l.n[axis]) % l.n[axis];
+    }
+    return fixed[l.index(cell[0], cell[1], cell[2])] == kNext;
+  };
+  std::vector<std::vector<std::ptrdiff_t>> films(l.n[2]);  // by plane
+  forEachCell([&](std::ptrdiff_t c, const std::array<int, 3>& cell) {
+    if (fixed[c] == kAway) return;
+    bool ends = fixed[c] == kNext;
+    for (int a = 0; a < 3 && !ends; ++a) ends = isNext(cell, a, -1) || isNext(cell, a, 1);
+    if (!ends) {
+      films[cell[2]].push_back(c);
+      return;
+    }
+    Range& range = ranges.at(cell[1], cell[2]);
+    range.least = std::min(range.least, next[c]);
+  });
+  for (const auto& plane : films) {
+    for (const auto c : plane) {
+      next[c] = kFar;
+      fixed[c] = kAway;
     }
   }
   // A cell's neighbours are all of the other colour, so each colour at once, by any number of threads. Information
@@ -249,7 +362,7 @@ void FreeSurface::redistance() {
   extendIntoHalo(l, distance_);
 }
 
-void FreeSurface::extendIntoSolids(const std::vector<float>& solid_distance) {
+void FreeSurface::extendIntoSolids(const std::vector<float>& solid_distance, const FaceField<float>& at_faces) {
   if (full_ || empty_) return;
   const Lattice& l = grid_.lattice;
   copyField(distance_, scratch_.field);
@@ -263,6 +376,10 @@ void FreeSurface::extendIntoSolids(const std::vector<float>& solid_distance) {
         Eigen::Vector3d out;
         for (int a = 0; a < 3; ++a) {
           out[a] = static_cast<double>(solid_distance[c + l.stride[a]]) - solid_distance[c - l.stride[a]];
+        }
+        // In the middle of a wall the cells beyond it tell nothing.
+        if (out.norm() < kClearSlope) {
+          for (int a = 0; a < 3; ++a) out[a] = static_cast<double>(at_faces[a][c + l.stride[a]]) - at_faces[a][c];
         }
         const double length = out.norm();
         if (!(length > 0.0)) continue;

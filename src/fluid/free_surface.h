@@ -7,8 +7,10 @@
 // the start; how much is reported. Pools that are not connected keep their own volume each; what detaches below the
 // grid's resolution returns to the nearest.
 //
-// In solids the level set is continued along their normals: the surface meets them at 90 degrees.
+// In solids the level set is continued from the liquid or the air next to them. What lies on the two sides of a wall
+// has nothing to do with each other: where its sign changes within a solid there is no surface.
 
+#include <functional>
 #include <vector>
 
 #include "fluid/mac_grid.h"
@@ -18,8 +20,10 @@ namespace monolith {
 
 class FreeSurface {
  public:
-  // Liquid below `fill_height` (m above the tank's floor) and in boxes (W).
-  FreeSurface(const MacGrid& grid, double fill_height, const std::vector<Eigen::AlignedBox3d>& boxes);
+  // Liquid below `fill_height` (m above the tank's floor) and in boxes (W). solid_distance: of points (W), in cell
+  // widths; where the faces of boxes lie on solids they do not bound the liquid. May be missing.
+  FreeSurface(const MacGrid& grid, double fill_height, const std::vector<Eigen::AlignedBox3d>& boxes,
+              const std::function<double(const Eigen::Vector3d&)>& solid_distance = nullptr);
 
   FreeSurface(const FreeSurface&) = default;
   FreeSurface& operator=(const FreeSurface& other);
@@ -31,12 +35,14 @@ class FreeSurface {
   // Cell widths, halo filled.
   const std::vector<double>& distance() const { return distance_; }
 
-  // The surface moves with the liquid over dt.
-  void advect(const FaceField<double>& velocity, double dt, double maximum_speed);
+  // The surface moves with the liquid over dt. solid_distance as below; empty: there are no solids.
+  void advect(const FaceField<double>& velocity, double dt, double maximum_speed,
+              const std::vector<float>& solid_distance);
 
   // Continues the distance into solids with the slope that it has next to them: liquid without surface tension has no
-  // angle at which it meets a solid, and at rest it stays so. solid_distance in cell widths, cell centres.
-  void extendIntoSolids(const std::vector<float>& solid_distance);
+  // angle at which it meets a solid, and at rest it stays so. Distances from solids in cell widths, at cell centres and
+  // at faces, whose differences tell the nearer side of a wall two cells thick.
+  void extendIntoSolids(const std::vector<float>& solid_distance, const FaceField<float>& at_faces);
 
   // Liquid volume, m^3; cell_fluid: part of each cell that is not solid.
   double volume(const std::vector<double>& cell_fluid) const;
@@ -76,7 +82,7 @@ class FreeSurface {
     std::vector<std::uint8_t> fixed;
   };
 
-  void redistance();
+  void redistance(const std::vector<float>& solid_distance);
   Pools findPools(const std::vector<double>& cell_fluid, const FaceField<double>& open) const;
   CutCells findCutCells(double margin, const std::vector<double>& cell_fluid, const Pools& pools) const;
   std::vector<int> groupPools(const Pools& now, std::vector<double>& known) const;

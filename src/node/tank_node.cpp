@@ -37,6 +37,7 @@ TankNode::TankNode(ros::NodeHandle& global, ros::NodeHandle& local, ros::Callbac
   health_.paused = options.start_paused;
   health_.report = control_.simulation().report();
   if (options.progress && options.duration > 0.0) progress_ = std::make_unique<ProgressBar>(options.duration);
+  for (const std::string& warning : control_.simulation().warnings()) ROS_WARN_STREAM(warning);
   const double possible = 1.0 / scene.time_step;
   if (options.state_rate > possible * (1.0 + 1e-9)) {
     ROS_WARN(

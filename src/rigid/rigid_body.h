@@ -3,6 +3,7 @@
 // mass Bcm, in world axes: v = (linear m/s, angular rad/s) in R^6.
 
 #include <Eigen/Geometry>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -27,6 +28,7 @@ struct RigidBody {
   std::vector<Shape> shapes;
   std::shared_ptr<const SignedDistance> distance;             // union of the shapes, frame B
   std::optional<Displacement> displacement;                   // likewise, where it is known
+  double thinnest = std::numeric_limits<double>::infinity();  // m, where it may be looked through: of its walls
   // state
   Eigen::Vector3d p_WBcm = Eigen::Vector3d::Zero();           // m
   Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();

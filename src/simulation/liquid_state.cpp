@@ -13,6 +13,7 @@ namespace monolith {
 namespace {
 
 constexpr double kLeastSlope = 0.25;  // of the level set, per cell
+constexpr float kWhollySolid = -0.4999F;  // cells: a wall that covers a cell reaches so far beyond its centre
 constexpr int kDeep = 3;              // faces of liquid in a row: a sheet tells no slope
 
 // Faces in air next to known ones go on with the slope that the velocity has in the liquid, mean over the directions
@@ -271,7 +272,7 @@ std::vector<SurfacePoint> sampleSurface(const MacGrid& grid, const FreeSurface& 
     for (int j = 0; j < l.n[1]; ++j) {
       for (int i = 0; i < l.n[0]; ++i) {
         const auto c = l.index(i, j, k);
-        if (std::abs(d[c]) > 1.0 || cell_distance[c] < -0.5) continue;
+        if (std::abs(d[c]) > 1.0 || cell_distance[c] <= kWhollySolid) continue;
         const Eigen::Vector3d normal = surface.normal(c);
         // The foot on the surface, if it lies in this cell's share: one point for a cell that the surface crosses. The
         // level set is a distance only in the mean: its slope there tells how far.

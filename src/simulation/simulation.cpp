@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
 #include "fluid/advection.h"
 #include "rigid/overlap.h"
 #include "scene/shown_vector.h"
+#include "simulation/resolution.h"
 #include "simulation/simulation_impl.h"
 
 namespace monolith {
@@ -39,16 +41,29 @@ Simulation::~Simulation() = default;
 void Simulation::Impl::initialise() {
   state = SimulationState();
   report = StepReport();
+  warnings.clear();
   for (const BodyDescription& body : scene.bodies) {
     state.bodies.push_back(makeRigidBody(body, kMeshResolution * grid.h));
-    state.bodies.back().p_WBcm = walls.imageInside(state.bodies.back().p_WBcm);
+    RigidBody& made = state.bodies.back();
+    made.p_WBcm = walls.imageInside(made.p_WBcm);
+    if (!hasGrid()) continue;
+    const std::string coarseness = judgeResolution(grid.h, made);
+    if (!coarseness.empty()) warnings.push_back(scene.source + ": " + coarseness);
   }
   const std::string overlaps = describeOverlaps(state.bodies, walls, kOverlapTolerance * grid.h);
   if (!overlaps.empty())
     throw SceneError(scene.source + ": bodies overlap at the start, expected them apart:\n" + overlaps);
   detector = std::make_unique<ContactDetector>(state.bodies, walls);
   wrenches.assign(state.bodies.size(), Wrench());
-  state.surface.emplace_back(grid, scene.liquid.fill_level, scene.liquid.boxes);
+  const auto solid_distance = [&](const Eigen::Vector3d& x) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const RigidBody& body : state.bodies) {
+      const Eigen::Vector3d image = x + grid.toNearestImage(x, body.p_WBcm);
+      least = std::min(least, body.distance->distance(body.pose().inverse() * image) / grid.h);
+    }
+    return least;
+  };
+  state.surface.emplace_back(grid, scene.liquid.fill_level, scene.liquid.boxes, solid_distance);
   if (state.surface[0].empty() && (scene.liquid.fill_level > 0.0 || !scene.liquid.boxes.empty())) {
     std::ostringstream text;
     text << scene.source
@@ -76,7 +91,7 @@ void Simulation::Impl::initialise() {
 void Simulation::Impl::prepareGeometry() {
   predicted = false;
   sampler.sample(state.bodies, solids);
-  state.surface[0].extendIntoSolids(solids.cell_distance);
+  state.surface[0].extendIntoSolids(solids.cell_distance, solids.distance);
 }
 
 // What a sub-step should be at most, s.
@@ -130,6 +145,7 @@ void Simulation::Impl::tellModel(ModelChoice& model) const {
 }
 
 const Scene& Simulation::scene() const { return impl_->scene; }
+const std::vector<std::string>& Simulation::warnings() const { return impl_->warnings; }
 double Simulation::time() const { return impl_->state.time; }
 const StepReport& Simulation::report() const { return impl_->report; }
 const std::vector<RigidBody>& Simulation::bodies() const { return impl_->state.bodies; }

@@ -42,6 +42,8 @@ class Simulation {
 
   const Scene& scene() const;
   double time() const;
+  // What of the scene its grid is too coarse for, to be shown to whoever runs it.
+  const std::vector<std::string>& warnings() const;
 
   // Advances by scene().time_step, in as many sub-steps as the CFL number asks for.
   [[nodiscard]] StepReport step();

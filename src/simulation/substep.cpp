@@ -56,12 +56,12 @@ void Simulation::Impl::prepareSolve(const StepWeights& w) {
   if (w.order == 1) {
     if (!predicted) return;
     sampler.sample(state.bodies, solids);
-    step_surface[0].extendIntoSolids(solids.cell_distance);
+    step_surface[0].extendIntoSolids(solids.cell_distance, solids.distance);
     return;
   }
   sampler.sample(plan.bodies, solids);
-  step_surface[0].advect(state.coupled.velocity, w.dt, state.liquid_speed);
-  step_surface[0].extendIntoSolids(solids.cell_distance);
+  step_surface[0].advect(state.coupled.velocity, w.dt, state.liquid_speed, solids.cell_distance);
+  step_surface[0].extendIntoSolids(solids.cell_distance, solids.distance);
 }
 
 // Of the faces that the solve has, to which it is assembled. What the accelerations that particles keep would add is in
@@ -226,14 +226,14 @@ void Simulation::Impl::moveLiquid(const StepWeights& w, StepReport& step) {
           mean[a][i] = 0.5 * (mean[a][i] + state.coupled.velocity[a][i]);
         }
       }
-      state.surface[0].advect(mean, w.dt, std::max(step.maximum_speed, state.liquid_speed));
+      state.surface[0].advect(mean, w.dt, std::max(step.maximum_speed, state.liquid_speed), solids.cell_distance);
     }
     // The poses of the solve are those of now but for dt^2/2 times the acceleration.
-    state.surface[0].extendIntoSolids(solids.cell_distance);
+    state.surface[0].extendIntoSolids(solids.cell_distance, solids.distance);
     predicted = true;
   } else {
     std::swap(state.surface, step_surface);  // it was extended into the bodies where they were
-    state.surface[0].advect(state.coupled.velocity, w.dt, step.maximum_speed);
+    state.surface[0].advect(state.coupled.velocity, w.dt, step.maximum_speed, solids.cell_distance);
     prepareGeometry();
   }
   state.liquid_speed = step.maximum_speed;

@@ -60,7 +60,7 @@ TEST(FreeSurface, LiquidMayCrossManyCellsAtOnce) {
                         {Eigen::AlignedBox3d(Eigen::Vector3d(0.0, 0.0, 2.0), Eigen::Vector3d(0.2, 0.2, 2.9))});
     FaceField<double> velocity;
     for (int a = 0; a < 3; ++a) velocity[a].assign(grid.lattice.size, a == 2 ? -1.0 : 0.0);
-    surface.advect(velocity, cells * grid.h, 1.0);
+    surface.advect(velocity, cells * grid.h, 1.0, {});
     EXPECT_NEAR(surface.volume(open), 0.9 * 0.04, 1e-9) << cells;
     for (int k = 0; k < 64; ++k) {
       const double z = (k + 0.5) * grid.h + cells * grid.h;
@@ -78,7 +78,7 @@ TEST(FreeSurface, NoSpeedIsTooLarge) {
   FreeSurface surface(grid, 0.31, {});
   FaceField<double> velocity;
   for (auto& field : velocity) field.assign(grid.lattice.size, 1e15);
-  surface.advect(velocity, 1.0, 2e15);
+  surface.advect(velocity, 1.0, 2e15, {});
   for (const double d : surface.distance()) ASSERT_TRUE(std::isfinite(d));
 }
 
@@ -120,7 +120,7 @@ TEST(FreeSurface, PoolsThatAreApartKeepTheirVolumes) {
   const double target = surface.volume(fluid);
   surface.correctVolume(target, fluid, open);
   const FreeSurface before = surface;
-  surface.advect(velocity, 0.5, 0.1);
+  surface.advect(velocity, 0.5, 0.1, {});
   EXPECT_GT(surface.volume(fluid), 1.03 * target);
   const FreeSurface grown = surface;
   surface.correctVolume(target, fluid, open);
@@ -140,7 +140,7 @@ TEST(FreeSurface, ADropCarriedAcrossTheTankKeepsItsPlaceAndSize) {
   const double before = surface.volume(open);
   FaceField<double> velocity;
   for (int a = 0; a < 3; ++a) velocity[a].assign(l.size, a == 0 ? 0.5 : 0.0);
-  for (int step = 0; step < 20; ++step) surface.advect(velocity, 0.03, 0.5);  // by 0.3
+  for (int step = 0; step < 20; ++step) surface.advect(velocity, 0.03, 0.5, {});  // by 0.3
   EXPECT_NEAR(surface.volume(open) / before, 1.0, 0.05);
   double x = 0.0, mass = 0.0;
   for (int k = 0; k < n; ++k) {
@@ -168,7 +168,7 @@ TEST(FreeSurface, StaysADistanceWhileItMoves) {
       for (int i = -1; i < n + 2; ++i) velocity[2][l.index(i, j, k)] = (i + 0.5) / n - 0.5;
     }
   }
-  for (int step = 0; step < 10; ++step) surface.advect(velocity, 0.05, 0.5);
+  for (int step = 0; step < 10; ++step) surface.advect(velocity, 0.05, 0.5, {});
   int looked = 0;
   for (int k = 2; k < n - 2; ++k) {
     for (int i = 3; i < n - 3; ++i) {
@@ -205,7 +205,7 @@ TEST(FreeSurface, ABubbleOfOneCellDoesNotGrowAtRest) {
   FaceField<double> velocity;
   for (auto& field : velocity) field.assign(grid.lattice.size, 0.0);
   for (int step = 0; step < 20; ++step) {
-    surface.advect(velocity, 1.0, 1.0);
+    surface.advect(velocity, 1.0, 1.0, {});
     EXPECT_LE(1.0 - surface.volume(open), 1.05 * air) << step;
     EXPECT_LE(surface.distance()[bubble], 0.6) << step;
   }
