@@ -31,13 +31,18 @@ struct BodyRows {
   std::array<std::vector<BodyRow>, 3> shear;   // per edge: adds to t
   std::array<std::vector<BodyRow>, 3> drag;    // per sliver face: velocity of the solid there
 
-  // Whether no liquid is at any body.
-  bool empty() const {
-    bool none = divergence.empty() && enclosed.empty();
+  // 1 for the bodies, of `bodies`, that liquid touches.
+  std::vector<char> touched(std::size_t bodies) const {
+    std::vector<char> out(bodies, 0);
+    const auto mark = [&](const std::vector<BodyRow>& rows) {
+      for (const BodyRow& row : rows) out[row.body] = 1;
+    };
+    mark(divergence);
+    mark(enclosed);
     for (const auto* kind : {&normal, &shear, &drag}) {
-      for (const auto& samples : *kind) none = none && samples.empty();
+      for (const auto& samples : *kind) mark(samples);
     }
-    return none;
+    return out;
   }
 };
 

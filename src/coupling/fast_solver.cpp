@@ -24,6 +24,10 @@ constexpr double kTightening = 0.3;  // of the tolerance in each of those rounds
 // is to be smaller, as much as they are too far.
 constexpr double kNoCloser = 0.5;
 constexpr double kMostTightening = 0.03;
+// A guess is the solution if it is closer than the tolerance by this part. It is the motion of the step before: what it
+// leaves wrong would be left again and again, and forces below the tolerance would never move a body, nor would they be
+// told of: one iteration lets them.
+constexpr double kGuessTolerance = 1e-5;
 constexpr double kRoundOff = 1e-13;
 // Impulses of contacts that press are solved for next to those of the small system: moving away from them costs this
 // part of the contact's response. Without it what redundant contacts do one by one is as sensitive as
@@ -55,7 +59,7 @@ struct FastSolver::Impl {
       BorderedVector push = system.forces(push_fields), answer = system.motion(answer_fields);
       system.setForces(Eigen::VectorXd::Unit(n, i), push);
       const double goal = std::max(options.tolerance, kResponseTolerance) * push.rest[i];
-      if (!system.solve(push, answer, goal, 0.0, options, report).converged) return false;
+      if (!system.solve(push, answer, {goal}, options, report).converged) return false;
       K.col(i) = system.twists(answer);
     }
     K = 0.5 * (K + K.transpose()).eval();
@@ -116,8 +120,9 @@ CoupledReport FastSolver::solveWithContacts(StepVector& rhs_fields, const Contac
   const Eigen::Index count = contacts.count();
 
   // Without liquid at any body S is their inertia, and exact.
-  const bool wet = !p.rows.empty();
+  const bool wet = std::find(p.touched.begin(), p.touched.end(), 1) != p.touched.end();
   const int on_estimate = wet ? kRoundsOnEstimate : 0;
+  system.moveUntouched(rhs, contacts, x);
   ContactGuess guess(contacts, r, options.tolerance);
   if (count > 0) {
     guess.setResponse(system.estimatedResponse());
@@ -154,8 +159,9 @@ CoupledReport FastSolver::solveWithContacts(StepVector& rhs_fields, const Contac
     // Given impulses are judged by the velocities that come of them, which the solve's error must not drown.
     if (given) closer = std::pow(kTightening, round - on_estimate + 1);
     const bool rough = count > 0 && !given && expected > ContactGuess::settledAt(options.tolerance);
-    last = system.solve(rhs, x, std::max(closer * options.tolerance, kRoundOff) * rhs_norm, rough ? kRoughPart : 0.0,
-                        options, report, past);
+    PackedSystem::Goal goal{std::max(closer * options.tolerance, kRoundOff) * rhs_norm, rough ? kRoughPart : 0.0};
+    if (round == 0) goal.of_guess = std::max(kGuessTolerance * options.tolerance, kRoundOff) * rhs_norm;
+    last = system.solve(rhs, x, goal, options, report, past);
     past = KrylovPast::kResidual;
     if (!last.converged) {
       // The first guess of what the contacts do may be far off, and then hard to solve for: begin with none that press.

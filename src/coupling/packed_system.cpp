@@ -88,7 +88,9 @@ Eigen::VectorXd PackedSystem::resistanceWeight() const {
   const StepProblem& p = *problem_;
   Eigen::VectorXd weight = scale_.cwiseInverse();
   for (std::size_t i = 0; i < p.free.size(); ++i) {
-    weight.segment<6>(6 * i) *= std::sqrt(resistanceRatio(p.radius[i], resistance_number_, p.viscous_number));
+    // A body that has left the liquid is as light as it is.
+    weight.segment<6>(6 * i) *=
+        p.touched[i] ? std::sqrt(resistanceRatio(p.radius[i], resistance_number_, p.viscous_number)) : 0.0;
   }
   return weight;
 }
@@ -99,7 +101,8 @@ void PackedSystem::adoptResponse(const Eigen::MatrixXd& K) {
   if (factor.info() != Eigen::Success) return;
   S_inverse_ = inverse;
   S_ = factor.solve(Eigen::MatrixXd::Identity(bodySize(), bodySize()));
-  const Eigen::VectorXd weight = resistanceWeight().cwiseInverse();
+  Eigen::VectorXd weight = resistanceWeight();
+  for (double& w : weight) w = w > 0.0 ? 1.0 / w : 0.0;
   resistance_ = weight.asDiagonal() * (S_ - bodies_ + columns_.ownResistance()) * weight.asDiagonal();
   fresh_cost_ = lost_ = 0.0;
   stale_ = false;
@@ -298,6 +301,16 @@ KrylovMaps PackedSystem::maps(const BorderedVector& rhs) {
           [this](const auto& from, auto& to) { preconditionBodies(from, to); }};
 }
 
+void PackedSystem::moveUntouched(const BorderedVector& rhs, const ContactRows& contacts, BorderedVector& x) const {
+  const StepProblem& p = *problem_;
+  for (std::size_t i = 0; i < p.free.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(6 * i);
+    if (p.touched[i] || !contacts.J.middleCols<6>(at).isZero(0.0)) continue;
+    const Eigen::Map<const Vector6d> force(rhs.rest.data() + at);
+    Eigen::Map<Vector6d>(x.rest.data() + at) = bodies_.block<6, 6>(at, at).ldlt().solve(force);
+  }
+}
+
 Eigen::VectorXd PackedSystem::moveDry(const BorderedVector& rhs, BorderedVector& x) const {
   Eigen::Map<Eigen::VectorXd>(x.rest.data(), bodySize()) =
       S_inverse_ * Eigen::Map<const Eigen::VectorXd>(rhs.rest.data(), bodySize());
@@ -310,11 +323,12 @@ Eigen::VectorXd PackedSystem::improvedTwists(const BorderedVector& rhs, Bordered
   return twists(x) + change.cast<double>().cwiseQuotient(scale_);
 }
 
-KrylovReport PackedSystem::solve(const BorderedVector& rhs, BorderedVector& x, double goal, double part,
+KrylovReport PackedSystem::solve(const BorderedVector& rhs, BorderedVector& x, const Goal& goal,
                                  const CoupledOptions& options, CoupledReport& report, KrylovPast past) {
   KrylovOptions k;
-  k.absolute_tolerance = goal;
-  k.relative_tolerance = part;
+  k.absolute_tolerance = goal.residual;
+  k.relative_tolerance = goal.part;
+  k.guess_tolerance = goal.of_guess;
   k.maximum_iterations = options.maximum_iterations;
   // Where viscosities differ by orders of magnitude every direction counts.
   if (!problem_->cell_viscosity.empty()) k.shortest_cycle = k.longest_cycle;

@@ -11,6 +11,7 @@
 
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
+#include <limits>
 #include <vector>
 
 #include "coupling/body_columns.h"
@@ -63,14 +64,22 @@ class PackedSystem {
   // Contacts that take part, of rows with these compliances.
   void setBorder(const ContactBorder& physical, const Eigen::VectorXd& compliance);
 
+  // Exactly what bodies do that neither liquid nor another body touches: the residual of all would hide theirs.
+  void moveUntouched(const BorderedVector& rhs, const ContactRows& contacts, BorderedVector& x) const;
   // The motion of bodies that no liquid touches, given the forces on them: S is exact. Returns the twists.
   Eigen::VectorXd moveDry(const BorderedVector& rhs, BorderedVector& x) const;
   // Twists of x after one cycle of the preconditioner on its residual. The right side is left as it was.
   Eigen::VectorXd improvedTwists(const BorderedVector& rhs, BorderedVector& x);
-  // Until the residual is `goal`, or `part` of what it was at first. past: of the call before, improvedTwists() or
-  // solve(); nothing but the border and forces on bodies may have changed since. The right side is left as it was.
-  KrylovReport solve(const BorderedVector& rhs, BorderedVector& x, double goal, double part,
-                     const CoupledOptions& options, CoupledReport& report, KrylovPast past = KrylovPast::kNothing);
+  // For the residual. See KrylovOptions.
+  struct Goal {
+    double residual = 0.0;
+    double part = 0.0;  // or so much of what it was at first
+    double of_guess = std::numeric_limits<double>::infinity();
+  };
+  // past: of the call before, improvedTwists() or solve(); nothing but the border and forces on bodies may have changed
+  // since. The right side is left as it was.
+  KrylovReport solve(const BorderedVector& rhs, BorderedVector& x, const Goal& goal, const CoupledOptions& options,
+                     CoupledReport& report, KrylovPast past = KrylovPast::kNothing);
 
   // S is renewed before it is next used if solves have lost more iterations by its age than renewing it takes...
   void judgeAge();

@@ -48,7 +48,9 @@ void StepProblem::assemble(SolidFractions& solids, const std::vector<RigidBody>&
   op_.set(&coefficients, &rows);
 
   std::vector<char> moves(all_bodies.size(), 0);
+  const std::vector<char> wet = rows.touched(all_bodies.size());
   free.clear();
+  touched.clear();
   free_index.assign(all_bodies.size(), -1);
   twist_scale.clear();
   radius.clear();
@@ -58,6 +60,7 @@ void StepProblem::assemble(SolidFractions& solids, const std::vector<RigidBody>&
     moves[b] = 1;
     free_index[b] = static_cast<int>(free.size());
     free.push_back(static_cast<int>(b));
+    touched.push_back(wet[b]);
     Matrix6d M = Matrix6d::Zero();
     M.topLeftCorner<3, 3>() = all_bodies[b].mass * Eigen::Matrix3d::Identity();
     M.bottomRightCorner<3, 3>() = all_bodies[b].worldInertia();

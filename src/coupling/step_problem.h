@@ -95,6 +95,7 @@ class StepProblem {
   double dt = 1.0;
   std::vector<int> free;                 // bodies whose twist is unknown
   std::vector<int> free_index;           // body -> place in `free`, or -1
+  std::vector<char> touched;             // by liquid: free bodies
   std::vector<Vector6d> twist_scale;     // of free bodies: sqrt of the inertia that they feel, liquid included
   std::vector<double> radius;            // of free bodies, cells: of a sphere that displaces as much
   std::vector<Matrix6d> inertia;         // M^ of free bodies with the liquid that sticks to them

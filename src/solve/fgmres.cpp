@@ -29,6 +29,7 @@ constexpr double kSingleRoundOff = 1e-5;  // of a norm
 // What the next cycle in single precision is to reduce the residual by: as many as it takes share `wanted` equally,
 // which takes the fewest directions at once.
 double shareOfCycle(double wanted) {
+  if (wanted >= 1.0) return 1.0;
   const double order = std::log(std::max(wanted, std::numeric_limits<double>::min()));
   return std::exp(order / std::ceil(order / std::log(kLeastReduction)));
 }
@@ -300,7 +301,7 @@ KrylovReport Fgmres::solve(const KrylovMaps& maps, const SplitVector& x, const K
   }
   report.initial_residual = report.residual;
   const double target = std::max(options.absolute_tolerance, options.relative_tolerance * report.residual);
-  report.converged = report.residual <= target;
+  report.converged = report.residual <= std::min(target, options.guess_tolerance);
   bool single = true;
   int length = std::min(options.shortest_cycle, options.longest_cycle);
   while (!report.converged && report.iterations < options.maximum_iterations && std::isfinite(report.residual)) {

@@ -9,6 +9,7 @@
 
 #include <Eigen/Dense>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "solve/blocked_sum.h"
@@ -19,6 +20,8 @@ namespace monolith {
 struct KrylovOptions {
   double absolute_tolerance = 0.0;  // on |b - A x|_2
   double relative_tolerance = 0.0;  // or so much of what it is at first, if that is more
+  // Unless the guess is as close as this, too, there is one iteration at least.
+  double guess_tolerance = std::numeric_limits<double>::infinity();
   int maximum_iterations = 200;
   // Directions kept. Cycles are short, which takes little memory and less to orthogonalise, until one gains too little:
   // those after it are twice as long.
