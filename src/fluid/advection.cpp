@@ -32,14 +32,17 @@ void mirrorIntoHalo(const Lattice& l, int face_axis, bool no_slip, std::vector<d
         if (axis == face_axis) {
           row[-s] = sign * row[s];
           row[(n + 1) * s] = sign * row[(n - 1) * s];
+          row[-2 * s] = sign * row[2 * s];
         } else if (no_slip && n > 1) {
           row[-s] = beyondStickingWall(row[0], row[s]);
+          row[-2 * s] = 2.0 * row[-s] - row[0];
           row[n * s] = beyondStickingWall(row[(n - 1) * s], row[(n - 2) * s]);
           row[(n + 1) * s] = 2.0 * row[n * s] - row[(n - 1) * s];
         } else {
           row[-s] = sign * row[0];
           row[n * s] = sign * row[(n - 1) * s];
           row[(n + 1) * s] = sign * row[(n - 2) * s];
+          row[-2 * s] = sign * row[s];
         }
       }
     }

@@ -9,7 +9,6 @@ namespace {
 struct AxisStencil {
   int base = 0;      // node below the position
   double t = 0.0;    // from there, in [0, 1]
-  bool cubic = false;
 };
 
 inline AxisStencil locate(const Lattice& l, int axis, double x) {
@@ -17,12 +16,10 @@ inline AxisStencil locate(const Lattice& l, int axis, double x) {
   if (l.periodic[axis]) {
     x -= l.n[axis] * std::floor(x / l.n[axis]);
     s.base = std::min(static_cast<int>(x), l.n[axis] - 1);
-    s.cubic = true;
   } else {
-    // The field reaches one node below and one beyond the last face.
+    // With a cubic's nodes around it: the halo has two below and one beyond the last face.
     x = std::clamp(x, -0.5, static_cast<double>(l.n[axis]));
     s.base = std::min(static_cast<int>(std::floor(x)), l.n[axis] - 1);
-    s.cubic = s.base >= 0;
   }
   s.t = x - s.base;
   return s;
@@ -39,12 +36,6 @@ inline Line greater(Line a, Line b) { return a > b ? a : b; }
 
 inline void cubicWeights(const AxisStencil& s, double w[4]) {
   const double t = s.t;
-  if (!s.cubic) {
-    w[0] = w[3] = 0.0;
-    w[1] = 1.0 - t;
-    w[2] = t;
-    return;
-  }
   w[0] = -t * (t - 1.0) * (t - 2.0) / 6.0;
   w[1] = (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0;
   w[2] = -(t + 1.0) * t * (t - 2.0) / 2.0;
@@ -89,45 +80,24 @@ double sampleCubic(const Lattice& l, const std::vector<double>& field, const Eig
   cubicWeights(sy, wy);
   cubicWeights(sz, wz);
   const double* f = field.data() + l.index(sx.base, sy.base, sz.base);
-  double sum = 0.0;
-  double low = f[0], high = f[0];
-  if (sx.cubic && sy.cubic && sz.cubic) {
-    // 16 lines of 4: 64 doubles, 200 flops with the limiter; bound by the loads.
-    Line lines = {0.0, 0.0, 0.0, 0.0}, lows = lineAt(f - 1), highs = lows;
-    const double* plane = f - 1 - l.stride[1] - l.stride[2];
-    for (int k = 0; k < 4; ++k, plane += l.stride[2]) {
-      Line of_plane = {0.0, 0.0, 0.0, 0.0};
-      const double* p = plane;
-      for (int j = 0; j < 4; ++j, p += l.stride[1]) {
-        const Line line = lineAt(p);
-        of_plane += wy[j] * line;
-        lows = lesser(lows, line);
-        highs = greater(highs, line);
-      }
-      lines += wz[k] * of_plane;
+  // 16 lines of 4: 64 doubles, 200 flops with the limiter; bound by the loads.
+  Line lines = {0.0, 0.0, 0.0, 0.0}, lows = lineAt(f - 1), highs = lows;
+  const double* plane = f - 1 - l.stride[1] - l.stride[2];
+  for (int k = 0; k < 4; ++k, plane += l.stride[2]) {
+    Line of_plane = {0.0, 0.0, 0.0, 0.0};
+    const double* p = plane;
+    for (int j = 0; j < 4; ++j, p += l.stride[1]) {
+      const Line line = lineAt(p);
+      of_plane += wy[j] * line;
+      lows = lesser(lows, line);
+      highs = greater(highs, line);
     }
-    sum = (wx[0] * lines[0] + wx[1] * lines[1]) + (wx[2] * lines[2] + wx[3] * lines[3]);
-    if (!limited) return sum;
-    low = std::min(std::min(lows[0], lows[1]), std::min(lows[2], lows[3]));
-    high = std::max(std::max(highs[0], highs[1]), std::max(highs[2], highs[3]));
-    const double slack = kOvershoot * (high - low);
-    return std::clamp(sum, low - slack, high + slack);
+    lines += wz[k] * of_plane;
   }
-  for (int k = sz.cubic ? -1 : 0; k <= (sz.cubic ? 2 : 1); ++k) {
-    for (int j = sy.cubic ? -1 : 0; j <= (sy.cubic ? 2 : 1); ++j) {
-      const double* p = f + j * l.stride[1] + k * l.stride[2];
-      double line = wx[1] * p[0] + wx[2] * p[1];
-      low = std::min({low, p[0], p[1]});
-      high = std::max({high, p[0], p[1]});
-      if (sx.cubic) {
-        line += wx[0] * p[-1] + wx[3] * p[2];
-        low = std::min({low, p[-1], p[2]});
-        high = std::max({high, p[-1], p[2]});
-      }
-      sum += wy[j + 1] * wz[k + 1] * line;
-    }
-  }
+  const double sum = (wx[0] * lines[0] + wx[1] * lines[1]) + (wx[2] * lines[2] + wx[3] * lines[3]);
   if (!limited) return sum;
+  const double low = std::min(std::min(lows[0], lows[1]), std::min(lows[2], lows[3]));
+  const double high = std::max(std::max(highs[0], highs[1]), std::max(highs[2], highs[3]));
   const double slack = kOvershoot * (high - low);
   return std::clamp(sum, low - slack, high + slack);
 }

@@ -26,7 +26,7 @@ double sampleLinear(const Lattice& lattice, const std::vector<double>& field, co
 Eigen::Vector3d sampleVelocity(const Lattice& lattice, const std::array<std::vector<double>, 3>& velocity,
                                const Eigen::Vector3d& position);
 
-// Tricubic (Lagrange, fourth order), linear where the stencil would leave the field. `limited`: kept within
+// Tricubic (Lagrange, fourth order). `limited`: kept within
 // the range of its stencil but for the overshoot of a smooth extremum, so that jumps do not ring.
 double sampleCubic(const Lattice& lattice, const std::vector<double>& field, const Eigen::Vector3d& node_position,
                    bool limited);

@@ -74,7 +74,6 @@ inline Four component(const double* u, const Lattice& l, const Four x[3]) {
 struct Feet {
   Four x[3];       // displacement, at most a cell
   Mask up[3];      // to the high side
-  Mask lowest[3];  // there is but one node below
   bool together;   // the same stencil for all four
 };
 
@@ -93,29 +92,20 @@ struct Nodes {
   Four w[5];
   Mask out[5] = {};  // not in the stencil: weight zero, and no extremum
 
-  // From a lowest node down linear, as sampleCubic().
-  Nodes(Four x, Mask up, Mask lowest) {
+  Nodes(Four x, Mask up) {
     const Four zero = all(0.0);
-    const Mask line = lowest & ~up;
     Four c[4];
     cubicWeights(x, up, c);
-    if (every(up | lowest)) {
-      w[0] = line ? -x : c[0];
-      w[1] = line ? x + 1.0 : c[1];
-      w[2] = line ? zero : c[2];
-      w[3] = line ? zero : c[3];
-      out[2] = out[3] = line;
+    if (every(up)) {
+      for (int i = 0; i < 4; ++i) w[i] = c[i];
       return;
     }
     first = -2;
-    count = none(up | lowest) ? 4 : 5;
-    out[0] = up | line;
-    out[3] = line;
+    count = none(up) ? 4 : 5;
+    out[0] = up;
     out[4] = ~up;
-    w[0] = out[0] ? zero : c[0];
-    w[1] = up ? c[0] : line ? -x : c[1];
-    w[2] = up ? c[1] : line ? x + 1.0 : c[2];
-    w[3] = up ? c[2] : line ? zero : c[3];
+    w[0] = up ? zero : c[0];
+    for (int i = 1; i < 4; ++i) w[i] = up ? c[i - 1] : c[i];
     w[4] = up ? c[3] : zero;
   }
 };
@@ -220,30 +210,24 @@ bool findFeet(const Lattice& l, const FaceField<double>& velocity, const std::ar
   feet.x[1] = -scale * component<a, 1>(u[1], l, x);
   feet.x[2] = -scale * component<a, 2>(u[2], l, x);
   feet.together = true;
-  bool apart_along_x = false;
   for (int d = 0; d < 3; ++d) {
-    const std::int64_t at_lowest = first[d] == 0 ? -1 : 0;
-    const std::int64_t next_to_it = d == 0 ? 0 : at_lowest;
-    const Mask lowest = {at_lowest, next_to_it, next_to_it, next_to_it};
-    feet.lowest[d] = lowest;
-    // Not below the wall.
-    if (first[d] == 0) feet.x[d] = lowest & (feet.x[d] < -0.5) ? all(-0.5) : feet.x[d];
+    if (first[d] == 0 && !l.periodic[d]) {
+      // Not below the wall, at which the first of the four is, and all of them across x.
+      const std::int64_t others = d == 0 ? 0 : -1;
+      const Mask lowest = {-1, others, others, others};
+      feet.x[d] = lowest & (feet.x[d] < -0.5) ? all(-0.5) : feet.x[d];
+    }
     feet.up[d] = feet.x[d] >= 0.0;
-    const bool same = every(feet.up[d]) || none(feet.up[d] | lowest);
-    feet.together = feet.together && same;
-    if (d == 0) apart_along_x = !same;
-    if (l.periodic[d] && any(lowest & ~feet.up[d])) return false;
+    feet.together = feet.together && (every(feet.up[d]) || none(feet.up[d]));
     far |= (feet.x[d] > 1.0) | (feet.x[d] < -1.0);
   }
-  // Five nodes along x then begin in the row before, which the very first one lacks.
-  if (apart_along_x && first[0] == 0 && first[1] <= 1 && first[2] <= 1) return false;
   return none(far);
 }
 
 template <bool limited>
 Four cubicAt(const double* u, const Lattice& l, const Feet& feet) {
   if (feet.together) return cubicTogether<limited>(u, l, feet);
-  const auto nodes = [&](int d) { return Nodes(feet.x[d], feet.up[d], feet.lowest[d]); };
+  const auto nodes = [&](int d) { return Nodes(feet.x[d], feet.up[d]); };
   return cubicApart<limited>(u, l, nodes(0), nodes(1), nodes(2));
 }
 

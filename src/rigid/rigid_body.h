@@ -28,7 +28,7 @@ struct RigidBody {
   std::vector<Shape> shapes;
   std::shared_ptr<const SignedDistance> distance;             // union of the shapes, frame B
   std::optional<Displacement> displacement;                   // likewise, where it is known
-  double thinnest = std::numeric_limits<double>::infinity();  // m, where it may be looked through: of its walls
+  double thinnest = std::numeric_limits<double>::infinity();  // m, of its walls, if it has any
   // state
   Eigen::Vector3d p_WBcm = Eigen::Vector3d::Zero();           // m
   Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();

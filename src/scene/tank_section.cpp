@@ -155,8 +155,7 @@ void readSolver(const YAML::Node& node, SolverDescription& solver, Violations& v
   map.read("tolerance", solver.tolerance, Range::kPositive);
   if (solver.tolerance >= 1.0) map.fail("tolerance", "a relative residual below 1");
   map.read("maximum_iterations", solver.maximum_iterations, 1);
-  map.read("threads", solver.threads, 0);
-  if (solver.threads > kMostThreads) map.fail("threads", "at most " + std::to_string(kMostThreads));
+  map.read("threads", solver.threads, 0, kMostThreads);
   map.read("cfl", solver.cfl, Range::kPositive);
 }
 

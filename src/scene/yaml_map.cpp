@@ -132,14 +132,12 @@ void YamlMap::read(const std::string& key, double& out, Range range) const {
   out = value;
 }
 
-void YamlMap::read(const std::string& key, int& out, int least) const {
+void YamlMap::read(const std::string& key, int& out, int least, int most) const {
   if (!has(key)) return;
   const YAML::Node node = get(key);
   double value;
-  if (!toNumber(node, value) || value != std::floor(value) || value < least ||
-      value > std::numeric_limits<int>::max()) {
-    return fail(
-        key, "a whole number from " + std::to_string(least) + " to " + std::to_string(std::numeric_limits<int>::max()));
+  if (!toNumber(node, value) || value != std::floor(value) || value < least || value > most) {
+    return fail(key, "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
   }
   out = static_cast<int>(value);
 }

@@ -4,6 +4,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <Eigen/Core>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -46,7 +47,7 @@ class YamlMap {
 
   // Each leaves `out` alone if the key is missing or its value wrong; a wrong value is a violation.
   void read(const std::string& key, double& out, Range range) const;
-  void read(const std::string& key, int& out, int least) const;
+  void read(const std::string& key, int& out, int least, int most = std::numeric_limits<int>::max()) const;
   void read(const std::string& key, std::string& out) const;
   void read(const std::string& key, bool (&out)[3]) const;
   // Size N vectors, every component within the range.

@@ -1,6 +1,7 @@
 #include "simulation/resolution.h"
 
 #include <algorithm>
+#include <array>
 #include <sstream>
 
 #include "geometry/wall_thickness.h"
@@ -10,6 +11,7 @@ namespace {
 
 constexpr double kLeastAcross = 3.0;  // cells: below, forces of the liquid are wrong by more than a few percent
 constexpr double kLeastWall = 1.0;    // cells: below, nothing of a wall may be seen on the grid
+constexpr double kLeastWide = 4.0;    // cells: a wall is so wide, that is more than it is thick
 // Edges and tips are thinner than the rest: a wall is what so much of the surface belongs to.
 constexpr double kPartOfSurface = 0.1;
 constexpr double kMostSamples = 200.0;  // along a body's diagonal
@@ -23,7 +25,10 @@ std::string judgeResolution(double cell_width, RigidBody& body) {
   const std::vector<double> thickness = wallThickness(*body.distance, spacing, kLeastAcross * cell_width);
   std::ostringstream text;
   if (thickness.empty()) return {};
-  body.thinnest = thickness.front();
+  // A ball or a rod of less than a cell has liquid on all sides anyway.
+  std::array<double, 3> sides = {size[0], size[1], size[2]};
+  std::sort(sides.begin(), sides.end());
+  if (sides[1] >= kLeastWide * cell_width) body.thinnest = thickness.front();
   const double wall = thickness[static_cast<std::size_t>(kPartOfSurface * static_cast<double>(thickness.size()))];
   const double across = size.minCoeff();
   const auto tell = [&](double length) { text << length << " m, " << length / cell_width << " cells of tank/cell_width"; };

@@ -1,7 +1,7 @@
 #pragma once
-// Index space that all fields of a staggered grid share: n[0] x n[1] x n[2] cells, x fastest, with one layer of
-// halo below and two above each axis, so that a stencil never branches. The face, edge or cell called (i, j, k)
-// is the one at the low side (faces), low corner (edges) or inside (cells) of cell (i, j, k).
+// Index space that all fields of a staggered grid share: n[0] x n[1] x n[2] cells, x fastest, with two layers of halo
+// around them, as a cubic next to a wall needs them, so that a stencil never branches. The face, edge or cell called
+// (i, j, k) is the one at the low side (faces), low corner (edges) or inside (cells) of cell (i, j, k).
 //
 // Along an axis with walls faces run from 0 to n inclusive; along a periodic one from 0 to n - 1.
 //
@@ -17,7 +17,7 @@ namespace monolith {
 constexpr int kLanes = 8;
 
 struct Lattice {
-  static constexpr int kLowHalo = 1;
+  static constexpr int kLowHalo = 2;
   static constexpr int kHighHalo = 2;
 
   std::array<int, 3> n{};

@@ -125,14 +125,16 @@ TEST(Simulation, TheDropSceneFallsAndSplashesWithFractions) {
   scene.tank.cell_width *= 2.0;
   Simulation simulation(scene);
   double volume = 0.0;
+  int iterations = 0;  // none while all bodies fall through the air and the liquid is still
   while (simulation.time() < 0.3) {
     const StepReport r = simulation.step();
     ASSERT_TRUE(r.committed()) << r.message;
     EXPECT_LE(r.residual, scene.solver.tolerance);
     if (volume == 0.0) volume = r.liquid_volume;
     EXPECT_NEAR(r.liquid_volume, volume, 1e-3 * volume);
-    EXPECT_GT(r.iterations, 0);
+    iterations += r.iterations;
   }
+  EXPECT_GT(iterations, 0);
   // Steel has sunk, the light ball floats.
   EXPECT_LT(simulation.bodyStates()[0].X_WB.translation()[2], 0.12);
   EXPECT_GT(simulation.bodyStates()[3].X_WB.translation()[2], 0.12);

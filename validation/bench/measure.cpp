@@ -58,7 +58,7 @@ struct FirstStep {
                stickingViscosity(s.liquid.density, s.gravity, grid.h)) {
     for (const BodyDescription& body : s.bodies) bodies.push_back(makeRigidBody(body, 0.5 * grid.h));
     SolidSampler(grid).sample(bodies, sampled);
-    surface.extendIntoSolids(sampled.cell_distance);
+    surface.extendIntoSolids(sampled.cell_distance, sampled.distance);
     TankWalls walls;
     walls.inside = Eigen::AlignedBox3d(s.tank.origin, s.tank.origin + s.tank.size);
     const double reach = 2.0 * s.gravity.norm() * s.time_step * s.time_step + 0.05 * grid.h;
