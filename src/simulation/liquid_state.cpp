@@ -14,9 +14,6 @@ namespace {
 
 constexpr double kLeastSlope = 0.25;  // of the level set, per cell
 constexpr float kWhollySolid = -0.4999F;  // cells: a wall that covers a cell reaches so far beyond its centre
-// Cells within a body to which liquid that slips past it goes on; what is deeper moves with the body, and with it the
-// level set on either side of a wall.
-constexpr double kSlipReach = 1.5;
 constexpr int kDeep = 3;              // faces of liquid in a row: a sheet tells no slope
 
 // Faces in air next to known ones go on with the slope that the velocity has in the liquid, mean over the directions
@@ -163,7 +160,7 @@ void completeMotion(const SolidFractions& solids, const MacGrid& grid, const std
         const bool wall_face = owner < 0;
         if (wall_face) {
           has[i] = 1;
-        } else if (no_slip || solids.distance[a][f] < -kSlipReach) {
+        } else if (no_slip) {
           const Eigen::Vector3d x = grid.faceCenter(a, i, j, k);
           const Eigen::Vector3d& p_WBcm = bodies[owner].p_WBcm;
           const Vector6d point = velocityRow(a, x + grid.toNearestImage(x, p_WBcm), p_WBcm);
