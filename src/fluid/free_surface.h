@@ -18,6 +18,11 @@
 
 namespace monolith {
 
+// Half-width, in cells, of the band around the surface in which the level set is a distance; beyond it is just as large
+// as that, which is further than anyone looks.
+constexpr double kLevelSetBand = 6.0;
+constexpr double kLevelSetFar = 1e3;  // cell widths: not known yet, or no liquid
+
 class FreeSurface {
  public:
   // Liquid below `fill_height` (m above the tank's floor) and in boxes (W). solid_distance: of points (W), in cell
@@ -79,7 +84,7 @@ class FreeSurface {
     Scratch(const Scratch&) {}
     Scratch& operator=(const Scratch&) = delete;
     std::vector<double> field;
-    std::vector<std::uint8_t> fixed;
+    std::vector<std::uint8_t> nearness;
   };
 
   void redistance(const std::vector<float>& solid_distance);
