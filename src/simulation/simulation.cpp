@@ -33,6 +33,31 @@ double kineticEnergy(const RigidBody& body) {
   return 0.5 * body.mass * body.twist.head<3>().squaredNorm() + 0.5 * spin.dot(body.worldInertia() * spin);
 }
 
+// Of points in W from the nearest body, in cell widths; infinite where that is more than a cell.
+std::function<double(const Eigen::Vector3d&)> solidDistance(const MacGrid& grid, const std::vector<RigidBody>& bodies) {
+  struct Placed {
+    std::shared_ptr<const SignedDistance> shape;
+    Eigen::Isometry3d X_BW;
+    Eigen::Vector3d p_WBcm;
+    Eigen::AlignedBox3d around;  // W
+  };
+  std::vector<Placed> placed;
+  for (const RigidBody& body : bodies) {
+    Eigen::AlignedBox3d around = body.distance->bounds().transformed(body.pose());
+    around.extend((around.min().array() - grid.h).matrix().eval());
+    around.extend((around.max().array() + grid.h).matrix().eval());
+    placed.push_back({body.distance, body.pose().inverse(), body.p_WBcm, around});
+  }
+  return [grid, placed](const Eigen::Vector3d& x) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Placed& body : placed) {
+      const Eigen::Vector3d image = x + grid.toNearestImage(x, body.p_WBcm);
+      if (body.around.contains(image)) least = std::min(least, body.shape->distance(body.X_BW * image) / grid.h);
+    }
+    return least;
+  };
+}
+
 }  // namespace
 
 Simulation::Simulation(const Scene& scene) : impl_(std::make_unique<Impl>(scene)) { impl_->initialise(); }
@@ -55,15 +80,7 @@ void Simulation::Impl::initialise() {
     throw SceneError(scene.source + ": bodies overlap at the start, expected them apart:\n" + overlaps);
   detector = std::make_unique<ContactDetector>(state.bodies, walls);
   wrenches.assign(state.bodies.size(), Wrench());
-  const auto solid_distance = [&](const Eigen::Vector3d& x) {
-    double least = std::numeric_limits<double>::infinity();
-    for (const RigidBody& body : state.bodies) {
-      const Eigen::Vector3d image = x + grid.toNearestImage(x, body.p_WBcm);
-      least = std::min(least, body.distance->distance(body.pose().inverse() * image) / grid.h);
-    }
-    return least;
-  };
-  state.surface.emplace_back(grid, scene.liquid.fill_level, scene.liquid.boxes, solid_distance);
+  state.surface.emplace_back(grid, scene.liquid.fill_level, scene.liquid.boxes, solidDistance(grid, state.bodies));
   if (state.surface[0].empty() && (scene.liquid.fill_level > 0.0 || !scene.liquid.boxes.empty())) {
     std::ostringstream text;
     text << scene.source
