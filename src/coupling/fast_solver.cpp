@@ -168,6 +168,7 @@ CoupledReport FastSolver::solveWithContacts(StepVector& rhs_fields, const Contac
       if (from_open || border.count() == 0) break;
       from_open = true;
       x = system.motion(x_fields);
+      system.moveUntouched(rhs, contacts, x);
       for (double* field : x.fields()) std::fill_n(field, system.lattice().size, 0.0);
       past = KrylovPast::kNothing;
       guess.setOpen();

@@ -16,8 +16,8 @@ constexpr double kLeastFluid = 1e-3;  // a face with less of it is closed: no ti
 // be the only way into the cell behind it, a pivot as small as round-off.
 constexpr double kOnSurface = 1e-3;
 constexpr double kUncut = 0.9;  // cell widths: a surface farther than half the diagonal from its centre does not cut a cell
-constexpr double kThroughCorner =
-    1.75;                   // times a wall's thickness it is to go through where three of them meet, sqrt(3)
+// Times a wall's thickness is it through where three of them meet: sqrt(3), and a little more.
+constexpr double kThroughCorner = 1.75;
 constexpr int kMargin = 2;  // cells around a body in which its distance is wanted
 constexpr double kHardlyMoved = 1e-6;  // cell widths, of any of its points: far below what the solve resolves
 
@@ -203,8 +203,9 @@ void SolidSampler::sampleBody(const RigidBody& body, BodySample& out) const {
           distance[a][c] = std::abs(at_face) < kOnSurface ? 0.0F : static_cast<float>(at_face);
           if (!may_be_thin || distance[a][c] > 0.0F) continue;
           const auto g = gridIndex(l, {f.low[0] + i, f.low[1] + j, f.low[2] + k}, a);
-          if (g >= 0 && isThinner(*body.distance, X_BW * (x_W + shift), kThroughCorner * kThinWall * h))
+          if (g >= 0 && isThinner(*body.distance, X_BW * (x_W + shift), kThroughCorner * kThinWall * h)) {
             thin[k].push_back({a, g});
+          }
         }
         std::array<double, 8> octants;
         if (std::abs(d) > kUncut) {

@@ -28,6 +28,7 @@ struct WallPart {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
 };
 
+// A face of the grid whose centre lies in a wall that is thinner than kThinWall.
 struct ThinPart {
   int axis = 0;
   std::ptrdiff_t face = 0;
@@ -44,7 +45,7 @@ struct BodyFractions {
   FaceField<double> face;      // W_Si per axis, box-local index
   std::vector<double> cell;    // part of the cell
   std::vector<WallPart> at_walls;
-  std::vector<ThinPart> thin;  // faces of the grid whose centre lies in a wall that is thinner than kThinWall
+  std::vector<ThinPart> thin;
 
   // Place along an axis, which may be just outside the box; -1: there is nothing.
   int within(int axis, int at) const {

@@ -28,11 +28,12 @@ std::string judgeResolution(double cell_width, RigidBody& body) {
   // A ball or a rod of less than a cell has liquid on all sides anyway.
   std::array<double, 3> sides = {size[0], size[1], size[2]};
   std::sort(sides.begin(), sides.end());
-  if (sides[1] >= kLeastWide * cell_width) body.thinnest = thickness.front();
+  const bool divides = sides[1] >= kLeastWide * cell_width;
+  if (divides) body.thinnest = thickness.front();
   const double wall = thickness[static_cast<std::size_t>(kPartOfSurface * static_cast<double>(thickness.size()))];
-  const double across = size.minCoeff();
+  const double across = sides[0];
   const auto tell = [&](double length) { text << length << " m, " << length / cell_width << " cells of tank/cell_width"; };
-  if (wall < kLeastWall * cell_width * (1.0 - kTolerance)) {
+  if (divides && wall < kLeastWall * cell_width * (1.0 - kTolerance)) {
     text << "body '" << body.name << "': walls of ";
     tell(wall);
     text << ": liquid passes through them; expected at least " << kLeastWall << " cell, better 2";
