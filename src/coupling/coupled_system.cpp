@@ -112,9 +112,8 @@ Eigen::Vector3d CoupledSystem::stickingMomentum(const std::vector<Vector6d>& twi
 }
 
 int CoupledSystem::coupledBodies() const {
-  std::vector<char> coupled(impl_->problem.free_index.size(), 0);
-  for (const BodyRow& row : impl_->problem.rows.divergence) coupled[row.body] = 1;
-  return static_cast<int>(std::count(coupled.begin(), coupled.end(), 1));
+  const std::vector<char> touched = impl_->problem.rows.touched(impl_->problem.free_index.size());
+  return static_cast<int>(std::count(touched.begin(), touched.end(), 1));
 }
 
 void CoupledSystem::assemble(SolidFractions& solids, const std::vector<RigidBody>& bodies,

@@ -60,7 +60,7 @@ class CoupledSystem {
   // Kinetic energy (J) and momentum (kg m/s) of the liquid that sticks to the bodies, when these have `twists`.
   double stickingEnergy(const std::vector<Vector6d>& twists) const;
   Eigen::Vector3d stickingMomentum(const std::vector<Vector6d>& twists) const;
-  int coupledBodies() const;  // bodies with at least one coupling row
+  int coupledBodies() const;  // bodies that liquid touches
 
  private:
   struct Impl;

@@ -307,7 +307,7 @@ void PackedSystem::moveUntouched(const BorderedVector& rhs, const ContactRows& c
     const auto at = static_cast<Eigen::Index>(6 * i);
     if (p.touched[i] || !contacts.J.middleCols<6>(at).isZero(0.0)) continue;
     const Eigen::Map<const Vector6d> force(rhs.rest.data() + at);
-    Eigen::Map<Vector6d>(x.rest.data() + at) = bodies_.block<6, 6>(at, at).ldlt().solve(force);
+    Eigen::Map<Vector6d>(x.rest.data() + at) = S_inverse_.block<6, 6>(at, at) * force;
   }
 }
 

@@ -64,7 +64,8 @@ class PackedSystem {
   // Contacts that take part, of rows with these compliances.
   void setBorder(const ContactBorder& physical, const Eigen::VectorXd& compliance);
 
-  // Exactly what bodies do that neither liquid nor another body touches: the residual of all would hide theirs.
+  // What bodies do that neither liquid nor another body touches, for which S is exact: the residual of all would hide
+  // theirs.
   void moveUntouched(const BorderedVector& rhs, const ContactRows& contacts, BorderedVector& x) const;
   // The motion of bodies that no liquid touches, given the forces on them: S is exact. Returns the twists.
   Eigen::VectorXd moveDry(const BorderedVector& rhs, BorderedVector& x) const;

@@ -5,7 +5,6 @@
 
 #include "coupling/displaced_moments.h"
 #include "coupling/octant_fractions.h"
-#include "geometry/wall_thickness.h"
 
 namespace monolith {
 namespace {
@@ -15,9 +14,8 @@ constexpr double kLeastFluid = 1e-3;  // a face with less of it is closed: no ti
 // A face's centre nearer to a surface than this, in cell widths, lies on it: what is left of its share of liquid would
 // be the only way into the cell behind it, a pivot as small as round-off.
 constexpr double kOnSurface = 1e-3;
-constexpr double kUncut = 0.9;  // cell widths: a surface farther than half the diagonal from its centre does not cut a cell
-// Times a wall's thickness is it through where three of them meet: sqrt(3), and a little more.
-constexpr double kThroughCorner = 1.75;
+constexpr double kUncut =
+    0.9;                    // cell widths: a surface farther than half the diagonal from its centre does not cut a cell
 constexpr int kMargin = 2;  // cells around a body in which its distance is wanted
 constexpr double kHardlyMoved = 1e-6;  // cell widths, of any of its points: far below what the solve resolves
 
@@ -175,10 +173,6 @@ void SolidSampler::sampleBody(const RigidBody& body, BodySample& out) const {
   std::vector<float>& cell_distance = out.cell_distance;
   std::vector<std::array<float, 6>> halves(size);  // solid part of the low and high half along each axis
 
-  f.thin.clear();
-  const bool may_be_thin = body.thinnest < kThinWall * h;
-  std::vector<std::vector<ThinPart>> thin(f.count[2]);  // by plane
-
 #pragma omp parallel for schedule(dynamic)
   for (int k = 0; k < f.count[2]; ++k) {
     for (int j = 0; j < f.count[1]; ++j) {
@@ -201,11 +195,6 @@ void SolidSampler::sampleBody(const RigidBody& body, BodySample& out) const {
           shift[a] = -0.5 * h;
           const double at_face = body.distance->distance(X_BW * (x_W + shift)) / h;
           distance[a][c] = std::abs(at_face) < kOnSurface ? 0.0F : static_cast<float>(at_face);
-          if (!may_be_thin || distance[a][c] > 0.0F) continue;
-          const auto g = gridIndex(l, {f.low[0] + i, f.low[1] + j, f.low[2] + k}, a);
-          if (g >= 0 && isThinner(*body.distance, X_BW * (x_W + shift), kThroughCorner * kThinWall * h)) {
-            thin[k].push_back({a, g});
-          }
         }
         std::array<double, 8> octants;
         if (std::abs(d) > kUncut) {
@@ -243,7 +232,6 @@ void SolidSampler::sampleBody(const RigidBody& body, BodySample& out) const {
       }
     }
   }
-  for (const auto& plane : thin) f.thin.insert(f.thin.end(), plane.begin(), plane.end());
   if (whole && body.displacement) {
     fitMoments(grid_, {body.displacement->volume, X_WB * body.displacement->centre}, f);
   }

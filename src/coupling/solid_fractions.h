@@ -28,15 +28,6 @@ struct WallPart {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
 };
 
-// A face of the grid whose centre lies in a wall that is thinner than kThinWall.
-struct ThinPart {
-  int axis = 0;
-  std::ptrdiff_t face = 0;
-};
-
-// Cell widths. A wall as thick has, wherever it lies in the grid, a layer of faces without liquid.
-constexpr double kThinWall = 2.0;
-
 // Fractions of one body on the faces of a box of cells; outside the box they are zero.
 struct BodyFractions {
   std::array<int, 3> low{};    // first cell of the box; may lie in a periodic image
@@ -45,7 +36,6 @@ struct BodyFractions {
   FaceField<double> face;      // W_Si per axis, box-local index
   std::vector<double> cell;    // part of the cell
   std::vector<WallPart> at_walls;
-  std::vector<ThinPart> thin;
 
   // Place along an axis, which may be just outside the box; -1: there is nothing.
   int within(int axis, int at) const {

@@ -7,6 +7,7 @@
 #include "coupling/body_rows.h"
 #include "coupling/narrow_gaps.h"
 #include "coupling/stokes_coefficients.h"
+#include "geometry/wall_thickness.h"
 
 namespace monolith {
 namespace {
@@ -33,6 +34,11 @@ bool localCell(const Lattice& l, const BodyFractions& f, const std::array<int, 3
   }
   return true;
 }
+
+// Cell widths. A wall as thick has, wherever it lies in the grid, a layer of faces without liquid.
+constexpr double kThinWall = 2.0;
+// Times a wall's thickness is it through where three of them meet: sqrt(3), and a little more.
+constexpr double kThroughCorner = 1.75;
 
 // Cells from a wall beyond which it is not next.
 constexpr int kBesideWall = 2;
@@ -133,18 +139,31 @@ std::vector<Matrix6d> attachStickingLiquid(const MacGrid& grid, const std::vecto
 
 std::vector<Matrix6d> closeThinWalls(const MacGrid& grid, const std::vector<RigidBody>& bodies,
                                      const std::vector<double>& liquid_distance, SolidFractions& solids) {
-  std::vector<StickingPart> parts;
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const int body = static_cast<int>(b);
-    for (const ThinPart& thin : solids.bodies[b].thin) {
-      double& fluid = solids.fluid[thin.axis][thin.face];
-      if (!(fluid > 0.0) || solids.owner[thin.axis][thin.face] != body) continue;
-      parts.push_back({thin.axis, thin.face, body, fluid});
-      fluid = 0.0;
+  const auto mayBeThin = [&](const RigidBody& body) { return body.thinnest < kThinWall * grid.h; };
+  if (std::none_of(bodies.begin(), bodies.end(), mayBeThin))
+    return std::vector<Matrix6d>(bodies.size(), Matrix6d::Zero());
+  const Lattice& l = grid.lattice;
+  std::vector<Eigen::Isometry3d> X_BW;
+  for (const RigidBody& body : bodies) X_BW.push_back(body.pose().inverse());
+  std::vector<std::vector<StickingPart>> found(l.faceEnd(2));  // by plane
+  forEachHeavyRow(l, [&](std::ptrdiff_t row, int j, int k) {
+    for (int a = 0; a < 3; ++a) {
+      for (int i = 0; i < l.faceEnd(0); ++i) {
+        const auto f = row + i;
+        const int owner = solids.owner[a][f];
+        double& fluid = solids.fluid[a][f];
+        if (!(fluid > 0.0) || solids.distance[a][f] > 0.0F || owner < 0 || !mayBeThin(bodies[owner])) continue;
+        const Eigen::Vector3d x = grid.faceCenter(a, i, j, k);
+        const Eigen::Vector3d image = x + grid.toNearestImage(x, bodies[owner].p_WBcm);
+        if (!isThinner(*bodies[owner].distance, X_BW[owner] * image, kThroughCorner * kThinWall * grid.h)) continue;
+        found[k].push_back({a, f, owner, fluid});
+        fluid = 0.0;
+      }
     }
-  }
-  return parts.empty() ? std::vector<Matrix6d>(bodies.size(), Matrix6d::Zero())
-                       : giveToBodies(grid, bodies, liquid_distance, parts, solids);
+  });
+  std::vector<StickingPart> parts;
+  for (const auto& plane : found) parts.insert(parts.end(), plane.begin(), plane.end());
+  return giveToBodies(grid, bodies, liquid_distance, parts, solids);
 }
 
 }  // namespace monolith

@@ -26,7 +26,7 @@ double stickingViscosity(double density, const Eigen::Vector3d& gravity, double 
 std::vector<Matrix6d> attachStickingLiquid(const MacGrid& grid, const std::vector<RigidBody>& bodies,
                                            const std::vector<double>& liquid_distance, SolidFractions& solids);
 
-// The same of liquid that slips, at walls thinner than kThinWall alone: faces whose centre lies in such a wall may be
+// The same of liquid that slips, at walls thinner than two cells alone: faces whose centre lies in such a wall may be
 // open on both sides of it and would let the liquid through.
 std::vector<Matrix6d> closeThinWalls(const MacGrid& grid, const std::vector<RigidBody>& bodies,
                                      const std::vector<double>& liquid_distance, SolidFractions& solids);

@@ -55,7 +55,7 @@ FreeSurface::FreeSurface(const MacGrid& grid, double fill_height, const std::vec
     return distance > -kDeepestFace && distance < kFarthestFace;
   };
   // A box's faces on the tank's walls do not bound the liquid, what is beyond them never counts; nor do its faces where
-  // they meet other liquid or lie on a solid.
+  // they meet other liquid or lie on a solid. The level's does where a body touches it: beside the body it goes on.
   const auto boxDistance = [&](const Eigen::Vector3d& x, const Filled& filled, bool within) {
     const Eigen::AlignedBox3d& box = filled.box;
     const double nudge = 1e-9 * grid.h;

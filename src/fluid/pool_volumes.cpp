@@ -8,6 +8,7 @@
 #include "geometry/cube_fraction.h"
 #include "solve/connected_runs.h"
 #include "solve/disjoint_sets.h"
+#include "solve/neighbours.h"
 
 namespace monolith {
 namespace {
@@ -61,14 +62,9 @@ FreeSurface::Pools FreeSurface::findPools(const std::vector<double>& cell_fluid,
   });
   for (std::size_t i = 0; i < reached.size(); ++i) {
     const auto c = reached[i];
-    const std::array<int, 3> at = l.cell(c);
-    for (int a = 0; a < 3; ++a) {
-      for (const int side : {0, 1}) {
-        const bool ends = at[a] == (side == 0 ? 0 : l.n[a] - 1);
-        if ((ends && !l.periodic[a]) || !(open[a][c + side * l.stride[a]] > 0.0)) continue;
-        reach(c + (side == 0 ? -1 : 1) * (ends ? 1 - l.n[a] : 1) * l.stride[a], out.of[c]);
-      }
-    }
+    forEachNeighbour(l, c, [&](std::ptrdiff_t next, int a, int direction) {
+      if (open[a][c + (direction > 0 ? l.stride[a] : 0)] > 0.0) reach(next, out.of[c]);
+    });
   }
   return out;
 }

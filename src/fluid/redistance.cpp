@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fluid/free_surface.h"
+#include "solve/neighbours.h"
 #include "solve/whole_fields.h"
 
 namespace monolith {
@@ -182,19 +183,11 @@ void measureNext(const Lattice& l, const std::vector<double>& level_set, const S
 // What lies between liquid and a solid alone, or air and a solid, is no surface but a film thinner than half a cell,
 // with no velocity of its own: it counts only where the surface ends at the solid.
 void dropFilms(const Lattice& l, std::vector<std::uint8_t>& nearness, std::vector<double>& distance) {
-  const auto isNext = [&](std::array<int, 3> cell, int axis, int side) {
-    cell[axis] += side;
-    if (cell[axis] < 0 || cell[axis] >= l.n[axis]) {
-      if (!l.periodic[axis]) return false;
-      cell[axis] = (cell[axis] + l.n[axis]) % l.n[axis];
-    }
-    return nearness[l.index(cell[0], cell[1], cell[2])] == kNext;
-  };
   std::vector<std::vector<std::ptrdiff_t>> films(l.n[2]);  // by plane
   forEachCell(l, [&](std::ptrdiff_t c, const std::array<int, 3>& cell) {
     if (nearness[c] != kNextAtSolid) return;
     bool ends = false;
-    for (int a = 0; a < 3 && !ends; ++a) ends = isNext(cell, a, -1) || isNext(cell, a, 1);
+    forEachNeighbour(l, c, [&](std::ptrdiff_t next, int, int) { ends = ends || nearness[next] == kNext; });
     if (!ends) films[cell[2]].push_back(c);
   });
   for (const auto& plane : films) {

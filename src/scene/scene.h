@@ -48,6 +48,8 @@ struct LiquidDescription {
   RheologyDescription rheology;
   double fill_level = 0.0;                            // m above the floor; 0: none, size.z(): full, closed
   std::vector<Eigen::AlignedBox3d> boxes;             // further liquid at the start, in W
+
+  bool any() const { return fill_level > 0.0 || !boxes.empty(); }
 };
 
 enum class BodyMotion { kFree, kFixed, kPrescribed };

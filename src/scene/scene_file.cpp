@@ -78,7 +78,7 @@ Scene loadScene(const std::string& yaml_file, const SceneResolver& resolver) {
   if (map.has("tank")) tank_usable = readTank(map.get("tank"), scene.tank, violations);
   if (map.has("liquid")) readLiquid(map.get("liquid"), scene.tank, tank_usable, scene.liquid, violations);
   // A dry tank has no cells.
-  const bool dry = scene.liquid.fill_level <= 0.0 && scene.liquid.boxes.empty();
+  const bool dry = !scene.liquid.any();
   if (tank_usable && !dry) checkMemory(map.get("tank"), scene.tank, violations);
   if (map.has("solver")) readSolver(map.get("solver"), scene.solver, violations);
   const std::string folder = fs::absolute(yaml_file).parent_path().string();

@@ -66,7 +66,7 @@ void continueIntoAir(const Lattice& l, const SolidFractions& solids, const std::
 }  // namespace
 
 MacGrid makeGrid(const TankDescription& tank, const LiquidDescription& liquid) {
-  const bool dry = liquid.fill_level <= 0.0 && liquid.boxes.empty();
+  const bool dry = !liquid.any();
   MacGrid grid;
   std::array<int, 3> n;
   for (int a = 0; a < 3; ++a) n[a] = dry ? 1 : static_cast<int>(std::lround(tank.size[a] / tank.cell_width));

@@ -19,19 +19,20 @@ constexpr double kTolerance = 0.01;      // of a length: facets of a mesh lie wi
 
 }  // namespace
 
-std::string judgeResolution(double cell_width, RigidBody& body) {
+BodyResolution judgeResolution(double cell_width, const RigidBody& body) {
   const Eigen::Vector3d size = body.distance->bounds().sizes();
   const double spacing = std::max(cell_width, size.norm() / kMostSamples);
   const std::vector<double> thickness = wallThickness(*body.distance, spacing, kLeastAcross * cell_width);
-  std::ostringstream text;
-  if (thickness.empty()) return {};
+  BodyResolution out;
+  if (thickness.empty()) return out;
   // A ball or a rod of less than a cell has liquid on all sides anyway.
   std::array<double, 3> sides = {size[0], size[1], size[2]};
   std::sort(sides.begin(), sides.end());
   const bool divides = sides[1] >= kLeastWide * cell_width;
-  if (divides) body.thinnest = thickness.front();
+  if (divides) out.thinnest = thickness.front();
   const double wall = thickness[static_cast<std::size_t>(kPartOfSurface * static_cast<double>(thickness.size()))];
   const double across = sides[0];
+  std::ostringstream text;
   const auto tell = [&](double length) { text << length << " m, " << length / cell_width << " cells of tank/cell_width"; };
   if (divides && wall < kLeastWall * cell_width * (1.0 - kTolerance)) {
     text << "body '" << body.name << "': walls of ";
@@ -42,7 +43,8 @@ std::string judgeResolution(double cell_width, RigidBody& body) {
     tell(across);
     text << " across: forces of the liquid on it are rough; expected at least " << kLeastAcross << " cells, better 4";
   }
-  return text.str();
+  out.warning = text.str();
+  return out;
 }
 
 }  // namespace monolith

@@ -71,9 +71,10 @@ void Simulation::Impl::initialise() {
     state.bodies.push_back(makeRigidBody(body, kMeshResolution * grid.h));
     RigidBody& made = state.bodies.back();
     made.p_WBcm = walls.imageInside(made.p_WBcm);
-    if (!hasGrid()) continue;
-    const std::string coarseness = judgeResolution(grid.h, made);
-    if (!coarseness.empty()) warnings.push_back(scene.source + ": " + coarseness);
+    if (!scene.liquid.any()) continue;
+    const BodyResolution resolution = judgeResolution(grid.h, made);
+    made.thinnest = resolution.thinnest;
+    if (!resolution.warning.empty()) warnings.push_back(scene.source + ": " + resolution.warning);
   }
   const std::string overlaps = describeOverlaps(state.bodies, walls, kOverlapTolerance * grid.h);
   if (!overlaps.empty())
@@ -81,7 +82,7 @@ void Simulation::Impl::initialise() {
   detector = std::make_unique<ContactDetector>(state.bodies, walls);
   wrenches.assign(state.bodies.size(), Wrench());
   state.surface.emplace_back(grid, scene.liquid.fill_level, scene.liquid.boxes, solidDistance(grid, state.bodies));
-  if (state.surface[0].empty() && (scene.liquid.fill_level > 0.0 || !scene.liquid.boxes.empty())) {
+  if (state.surface[0].empty() && scene.liquid.any()) {
     std::ostringstream text;
     text << scene.source
          << ": liquid: fill_level and boxes hold the centre of no cell, expected more than half of tank/"

@@ -72,7 +72,6 @@ struct Simulation::Impl {
   }
 
   void initialise();
-  bool hasGrid() const { return grid.lattice.n != std::array<int, 3>{1, 1, 1}; }  // with liquid
   bool hasLiquid() const { return !state.surface[0].empty(); }
   bool hasSurface() const { return hasLiquid() && !state.surface[0].full(); }
   bool nonNewtonian() const { return hasLiquid() && !viscosity_law.constant(); }

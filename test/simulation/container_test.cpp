@@ -18,6 +18,17 @@ constexpr double kCell = 0.02;
 constexpr double kInner = 0.24;  // m, width and height inside
 constexpr double kFilled = 0.13;
 
+Scene emptyTank(const Vector3d& cells, double viscosity) {
+  Scene scene;
+  scene.source = "test";
+  scene.tank.size = kCell * cells;
+  scene.tank.cell_width = kCell;
+  scene.liquid.density = 1000.0;
+  scene.liquid.dynamic_viscosity = viscosity;
+  scene.time_step = 0.02;
+  return scene;
+}
+
 Shape box(const Vector3d& size, const Vector3d& position) {
   Shape shape = boxBody("part", size, 1000.0, Vector3d::Zero()).shapes[0];
   shape.X_BG = Eigen::Isometry3d(Eigen::Translation3d(position));
@@ -39,13 +50,7 @@ BodyDescription bucket(double wall, const Vector3d& position) {
 
 // A bucket that stands `offset` cells beside the grid's faces and is filled to kFilled.
 Scene filledBucket(double wall_cells, double offset, double viscosity) {
-  Scene scene;
-  scene.source = "test";
-  scene.tank.size = kCell * Vector3d(32, 24, 24);
-  scene.tank.cell_width = kCell;
-  scene.liquid.density = 1000.0;
-  scene.liquid.dynamic_viscosity = viscosity;
-  scene.time_step = 0.02;
+  Scene scene = emptyTank({32, 24, 24}, viscosity);
   const Vector3d at = Vector3d(0.32, 0.24, 0.12) + Vector3d::Constant(offset * kCell);
   const Vector3d half(0.5 * kInner, 0.5 * kInner, 0.0);
   scene.liquid.boxes = {Eigen::AlignedBox3d(at - half, at + half + Vector3d(0.0, 0.0, kFilled))};
@@ -144,14 +149,8 @@ TEST(Container, CarriesInviscidLiquidAlong) {
 
 // Left a column collapses against a wall, behind which a pool of some depth is still.
 Scene divided(double wall_cells, double offset, double behind) {
-  Scene scene;
-  scene.source = "test";
-  scene.tank.size = kCell * Vector3d(24, 10, 20);
-  scene.tank.cell_width = kCell;
-  scene.liquid.density = 1000.0;
-  scene.liquid.dynamic_viscosity = 0.01;
+  Scene scene = emptyTank({24, 10, 20}, 0.01);
   scene.liquid.fill_level = behind;
-  scene.time_step = 0.02;
   const double left = (10.0 + offset) * kCell, width = wall_cells * kCell;
   scene.liquid.boxes = {Eigen::AlignedBox3d(Vector3d::Zero(), Vector3d(0.08, 0.2, 0.3)),
                         Eigen::AlignedBox3d(Vector3d::Zero(), Vector3d(left, 0.2, 0.12))};

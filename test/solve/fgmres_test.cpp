@@ -90,6 +90,21 @@ TEST_F(FgmresTest, AnExactPreconditionerNeedsOneIterationForEachCycleOfSinglePre
   EXPECT_LE(report.iterations, 4);
 }
 
+TEST_F(FgmresTest, AGuessWithinTheToleranceIsImprovedOnceUnlessItIsFarCloser) {
+  std::vector<double> x(rhs.size(), 0.0);
+  const double start = residual(x);
+  KrylovOptions options;
+  options.absolute_tolerance = 2.0 * start;
+  EXPECT_EQ(Fgmres().solve(maps(), whole(x), options).iterations, 0);
+  options.guess_tolerance = 1.1 * start;
+  EXPECT_EQ(Fgmres().solve(maps(), whole(x), options).iterations, 0);
+  options.guess_tolerance = 0.9 * start;
+  const KrylovReport report = Fgmres().solve(maps(), whole(x), options);
+  EXPECT_TRUE(report.converged);
+  EXPECT_EQ(report.iterations, 1);
+  EXPECT_LT(residual(x), start);
+}
+
 TEST_F(FgmresTest, GoesOnFromAKnownFirstDirection) {
   KrylovOptions options;
   options.absolute_tolerance = 1e-8;
