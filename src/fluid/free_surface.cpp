@@ -10,7 +10,7 @@
 namespace monolith {
 namespace {
 
-constexpr double kTravelToRedistance = 1.0;  // cells
+constexpr double kTravelToRedistance = 0.25;  // cells
 // Cells: a box of liquid whose face is so far within a solid or before it ends at the solid.
 constexpr double kDeepestFace = 0.5, kFarthestFace = 0.01;
 constexpr double kClearSlope = 1.0;          // of the distance from a solid, over two cells: half of what it is

@@ -2,66 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
 
 #include "fluid/advection.h"
-#include "fluid/next_to_known.h"
 #include "solve/whole_fields.h"
 
 namespace monolith {
 namespace {
 
-constexpr double kLeastSlope = 0.25;  // of the level set, per cell
+constexpr double kLeastSlope = 0.25;      // of the level set, per cell
 constexpr float kWhollySolid = -0.4999F;  // cells: a wall that covers a cell reaches so far beyond its centre
-constexpr int kDeep = 3;              // faces of liquid in a row: a sheet tells no slope
-
-// Faces in air next to known ones go on with the slope that the velocity has in the liquid, mean over the directions
-// that tell one: held constant instead, velocity at the surface would be that of up to half a cell below it. No
-// steeper than `steepest`: where no pressure holds the liquid back, in the tip of a jet, what goes on as steep as it is
-// would feed on itself from step to step.
-void continueIntoAir(const Lattice& l, const SolidFractions& solids, const std::vector<LiquidField>& fields,
-                     FaceMask& known) {
-  std::vector<std::uint8_t> before;
-  for (int a = 0; a < 3; ++a) {
-    for (const LiquidField& field : fields) fillHalo(l, (*field.values)[a]);
-    fillHalo(l, known[a]);
-    copyField(known[a], before);
-#pragma omp parallel for schedule(static, kPlanesInTurn)
-    for (int k = 0; k < l.faceEnd(2); ++k) {
-      forEachNextToKnown(l, k, before.data(), [&](std::ptrdiff_t f, const std::array<int, 3>& at) {
-        if (!(solids.distance[a][f] > 0.0 && solids.fluid[a][f] > 0.0)) return;
-        // Rows of kDeep known faces, the two nearest of each.
-        std::array<std::array<std::ptrdiff_t, 2>, 6> rows;
-        int count = 0;
-        for (int b = 0; b < 3; ++b) {
-          for (const int step : {-1, 1}) {
-            int found = 0;
-            for (; found < kDeep; ++found) {
-              const int place = at[b] + (found + 1) * step;
-              const bool inside = place >= 0 && place < (b == a ? l.faceEnd(b) : l.n[b]);
-              const auto next = f + (found + 1) * step * l.stride[b] - (inside ? 0 : step * l.n[b] * l.stride[b]);
-              if (!(inside || l.periodic[b]) || !before[next]) break;
-              if (found < 2) rows[count][found] = next;
-            }
-            if (found == kDeep) ++count;
-          }
-        }
-        if (count == 0) return;
-        for (const LiquidField& field : fields) {
-          double* u = (*field.values)[a].data();
-          double sum = 0.0;
-          for (int n = 0; n < count; ++n) {
-            const auto [near, far] = rows[n];
-            sum += u[near] + std::clamp(u[near] - u[far], -field.steepest, field.steepest);
-          }
-          u[f] = sum / count;
-        }
-        known[a][f] = 1;
-      });
-    }
-  }
-}
 
 }  // namespace
 
@@ -141,39 +91,6 @@ bool intersect(const FaceMask& mask, const FaceMask& other, FaceMask& both) {
     }
   }
   return lost != 0;
-}
-
-void completeMotion(const SolidFractions& solids, const MacGrid& grid, const std::vector<RigidBody>& bodies, int layers,
-                    bool no_slip, const std::vector<LiquidField>& fields, FaceMask& known) {
-  const Lattice& l = grid.lattice;
-  const int width = l.faceEnd(0);
-  for (int a = 0; a < 3; ++a) {
-    forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
-      std::uint8_t* has = known[a].data() + row;
-      if (std::memchr(has, 0, width) == nullptr) return;
-      for (int i = 0; i < width; ++i) {
-        if (has[i]) continue;
-        const auto f = row + i;
-        for (const LiquidField& field : fields) (*field.values)[a][f] = 0.0;
-        if (solids.distance[a][f] > 0.0) continue;
-        const int owner = solids.owner[a][f];
-        const bool wall_face = owner < 0;
-        if (wall_face) {
-          has[i] = 1;
-        } else if (no_slip) {
-          const Eigen::Vector3d x = grid.faceCenter(a, i, j, k);
-          const Eigen::Vector3d& p_WBcm = bodies[owner].p_WBcm;
-          const Vector6d point = velocityRow(a, x + grid.toNearestImage(x, p_WBcm), p_WBcm);
-          for (const LiquidField& field : fields) (*field.values)[a][f] = point.dot((*field.of_bodies)[owner]);
-          has[i] = 1;
-        }
-      }
-    });
-  }
-  continueIntoAir(l, solids, fields, known);
-  std::vector<FaceField<double>*> values;
-  for (const LiquidField& field : fields) values.push_back(field.values);
-  extrapolateVelocity(l, layers, no_slip, known, values);
 }
 
 std::vector<double> hydrostaticPressure(const MacGrid& grid, const FreeSurface& surface, double density,

@@ -30,18 +30,6 @@ void markResolved(const StepProblem& problem, FaceMask& mask);
 // both = mask and other. Returns whether that is less than mask.
 bool intersect(const FaceMask& mask, const FaceMask& other, FaceMask& both);
 
-// A velocity of the liquid, or its rate, and the bodies' twists, or their rates.
-struct LiquidField {
-  FaceField<double>* values;
-  const std::vector<Vector6d>* of_bodies;
-  double steepest;  // of the slope with which it goes on into the air, per cell
-};
-
-// Gives faces inside bodies the bodies' motion where the liquid sticks to them, and spreads what is known into solids
-// and air, marking it known.
-void completeMotion(const SolidFractions& solids, const MacGrid& grid, const std::vector<RigidBody>& bodies, int layers,
-                    bool no_slip, const std::vector<LiquidField>& fields, FaceMask& known);
-
 // Pressure of the liquid at rest: where it is exact the first solve has nothing to do.
 std::vector<double> hydrostaticPressure(const MacGrid& grid, const FreeSurface& surface, double density,
                                         const Eigen::Vector3d& gravity);

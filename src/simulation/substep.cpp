@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fluid/advection.h"
+#include "simulation/continued_motion.h"
 #include "simulation/simulation_impl.h"
 #include "solve/whole_fields.h"
 
@@ -13,9 +14,9 @@ namespace {
 // The first solve starts from nothing that it could correct later.
 constexpr double kFirstTolerance = 1e-4;
 constexpr double kClosingTolerance = 1e-3;  // of a cell: a gap that closes by less within a step is no impact
-// Per cell, with which the liquid's motion goes on into the air: of sqrt(gravity h), the speed of the shortest waves,
-// and of gravity. A wave of 32 cells length and an amplitude of a third of a cell has so much. Neither depends on the
-// step, which would cost an order of accuracy.
+// Per cell, with which the liquid's motion goes on into the air where only its own slope tells how: of sqrt(gravity h),
+// the speed of the shortest waves, and of gravity. A wave of 32 cells length and an amplitude of a third of a cell has
+// so much. Neither depends on the step, which would cost an order of accuracy.
 constexpr double kSteepestVelocity = 0.03;
 constexpr double kSteepestRate = 0.15;
 constexpr double kMostIntrusion = 0.5;  // of a cell, that bodies may come into walls or each other

@@ -58,6 +58,44 @@ TEST(Surface, APoolBehindAWallKeepsItsLevel) {
   EXPECT_NEAR(level / points, 0.1, 1e-4);
 }
 
+// Cells at the surface run dry and fill again all the time: what they begin with decides. Of the height at the start,
+// the largest in the last quarter of 20 periods.
+TEST(Surface, ShortWavesKeepTheirHeightWhereverTheSurfaceLiesInItsCells) {
+  constexpr int kLength = 12;
+  constexpr double kCell = 1.0 / kLength, kWaveNumber = 2.0 * M_PI;
+  const double period = 2.0 * M_PI / std::sqrt(9.81 * kWaveNumber);
+  for (const double level : {-0.1, 0.1, 0.3}) {
+    for (const double height : {0.2, 0.5}) {
+      Scene scene = water({kLength, 4, 16}, kCell);
+      scene.liquid.dynamic_viscosity = 0.0;
+      scene.tank.periodic[0] = scene.tank.periodic[1] = true;
+      scene.time_step = 1.0 / 30.0;
+      for (int i = 0; i < kLength; ++i) {
+        const double low = i * kCell, crest = height * std::cos(kWaveNumber * (low + 0.5 * kCell));
+        scene.liquid.boxes.emplace_back(Vector3d(low, 0.0, 0.0),
+                                        Vector3d(low + kCell, 4.0 * kCell, (8.5 + level + crest) * kCell));
+      }
+      Simulation simulation(scene);
+      const auto heightNow = [&] {
+        double lowest = 1.0, highest = 0.0;
+        for (const SurfacePoint& point : simulation.surfacePoints()) {
+          lowest = std::min<double>(lowest, point.position[2]);
+          highest = std::max<double>(highest, point.position[2]);
+        }
+        return 0.5 * (highest - lowest) / kCell;
+      };
+      double largest = 0.0;
+      while (simulation.time() < 20.0 * period) {
+        const StepReport report = simulation.step();
+        ASSERT_TRUE(report.committed()) << report.message;
+        if (simulation.time() > 15.0 * period) largest = std::max(largest, heightNow());
+      }
+      EXPECT_GT(largest, 0.75 * height) << level << ", " << height;
+      EXPECT_LT(largest, 1.4 * height) << level << ", " << height;
+    }
+  }
+}
+
 // A jet rises along the far wall and falls back: thin sheets, in which no pressure holds the liquid back.
 TEST(Surface, ADamThatBreaksGainsNoEnergy) {
   for (const double dt : {0.02, 0.005}) {
