@@ -10,7 +10,10 @@ namespace monolith {
 namespace {
 
 constexpr float kFar = 1e3f;          // cell widths: no solid in sight
-constexpr double kLeastFluid = 1e-3;  // a face with less of it is closed: no tiny pivots
+// A face with less of it is closed. Its velocity would be the flux of what moves behind it over this: a body that comes
+// to lie on another would end on a film of it, in pockets whose pressure and the contact's force are known by their sum
+// alone, and in the corner of a container liquid would be shot about.
+constexpr double kLeastFluid = 0.02;
 // A face's centre nearer to a surface than this, in cell widths, lies on it: what is left of its share of liquid would
 // be the only way into the cell behind it, a pivot as small as round-off.
 constexpr double kOnSurface = 1e-3;
@@ -227,7 +230,9 @@ void SolidSampler::sampleBody(const RigidBody& body, BodySample& out) const {
           if (before[a] >= 0) {
             low_part = halves[f.local(before[0], before[1], before[2])][2 * a + 1];
           }
-          f.face[a][c] = 0.5 * (low_part + halves[c][2 * a]);
+          // What will be closed belongs to the body's volume.
+          const double part = 0.5 * (low_part + halves[c][2 * a]);
+          f.face[a][c] = part > 1.0 - kLeastFluid ? 1.0 : part;
         }
       }
     }

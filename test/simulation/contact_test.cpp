@@ -130,6 +130,45 @@ TEST(ModelSelection, LeavingOutTheStressBlockChangesTheAnswerByNoMoreThanItsSize
   EXPECT_LT((a.bodies()[0].twist - b.bodies()[0].twist).norm(), 1e-6 * b.bodies()[0].twist.norm());
 }
 
+// What lands on another body in water stands on it: no film of a hundredth of a cell carries it, no pocket in the gap
+// holds it down. The gap lies on faces of the grid.
+TEST(Contact, ABoxThatSinksOntoASlabStandsOnIt) {
+  constexpr double kCell = 0.02, kLiquid = 1000.0, kGravity = 9.81;
+  const Eigen::Vector3d size(0.12, 0.1, 0.08);
+  const struct {
+    double angle;
+    Eigen::Vector3d axis;
+    double aside;
+  } poses[] = {{0.3, {1.0, 2.0, 0.5}, 0.0}, {0.8, {1.0, 2.0, 0.5}, 0.008}, {0.8, {1.0, 0.0, 0.3}, 0.015}};
+  for (const auto& pose : poses) {
+    Scene scene;
+    scene.source = "test";
+    scene.tank.size = {0.4, 0.4, 0.4};
+    scene.tank.cell_width = kCell;
+    scene.liquid.density = kLiquid;
+    scene.liquid.dynamic_viscosity = 0.001;
+    scene.liquid.fill_level = 0.32;
+    scene.time_step = 0.02;
+    scene.contact.friction = 0.4;
+    scene.bodies = {boxBody("box", size, 2500.0, {0.2 + pose.aside, 0.203, 0.22}),
+                    boxBody("slab", {0.2, 0.2, 0.06}, 3000.0, {0.2, 0.2, 0.03})};
+    scene.bodies[0].X_WB.rotate(Eigen::AngleAxisd(pose.angle, pose.axis.normalized()));
+    Simulation simulation(scene);
+    const double buoyancy = kLiquid * kGravity * size.prod(), weight = kGravity * scene.bodies[0].mass;
+    int iterations = 0;
+    for (int i = 0; i < 150; ++i) {
+      const StepReport report = simulation.step();
+      ASSERT_TRUE(report.committed()) << report.message;
+      iterations += report.iterations;
+      if (i < 100) continue;
+      const BodyState box = simulation.bodyStates()[0];
+      EXPECT_NEAR(box.liquid.force[2], buoyancy, 0.02 * weight) << pose.angle << ", " << report.time;
+      EXPECT_NEAR(box.contact.force[2], weight - buoyancy, 0.02 * weight) << pose.angle << ", " << report.time;
+    }
+    EXPECT_LT(iterations, 1500) << pose.angle;
+  }
+}
+
 // Two bodies in a dry tank without gravity: `first` comes from the left at 1 m/s, or does not move; `second` is at
 // rest.
 Scene meeting(BodyDescription first, BodyDescription second) {

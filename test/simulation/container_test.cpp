@@ -124,6 +124,21 @@ TEST(Container, HoldsItsLiquidWhileItIsMoved) {
   }
 }
 
+// The corner that turns through the cells beside it opens some by next to nothing: no liquid is shot out of these.
+TEST(Container, ThatTurnsShootsNoLiquidAbout) {
+  constexpr double kSpin = 2.0;
+  Scene scene = filledBucket(3.0, 0.0, 0.001);
+  scene.bodies[0].motion = BodyMotion::kPrescribed;
+  scene.bodies[0].prescribed.twist[5] = kSpin;
+  Simulation simulation(scene);
+  const double corner = kSpin * std::sqrt(0.5) * kInner;
+  while (simulation.time() < 2.5) {
+    const StepReport report = simulation.step();
+    ASSERT_TRUE(report.committed()) << report.message;
+    EXPECT_LT(report.maximum_speed, 6.0 * corner) << report.time;
+  }
+}
+
 // Without viscosity the velocity within the walls is not theirs: the level set there is not carried along.
 TEST(Container, CarriesInviscidLiquidAlong) {
   Scene scene = filledBucket(5.0, 0.3, 0.0);
