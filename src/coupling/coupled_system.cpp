@@ -90,6 +90,8 @@ CoupledSystem::CoupledSystem(const MacGrid& grid, SolverName solver, CouplingNam
     : impl_(std::make_unique<Impl>(grid, solver, coupling, discretisation, sticking_viscosity)) {}
 CoupledSystem::~CoupledSystem() = default;
 
+void CoupledSystem::setStickingViscosity(double viscosity) { impl_->problem.sticking_viscosity = viscosity; }
+
 void CoupledSystem::forget() {
   impl_->problem.forget();
   impl_->solver = makeSolver(impl_->solver_name);

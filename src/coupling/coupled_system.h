@@ -28,6 +28,9 @@ class CoupledSystem {
                 double sticking_viscosity);
   ~CoupledSystem();
 
+  // From the next assembly on.
+  void setStickingViscosity(double viscosity);
+
   // What the solver has learnt from the steps so far does not count from now on; assemble() has to follow.
   void forget();
 

@@ -73,9 +73,9 @@ std::vector<Matrix6d> giveToBodies(const MacGrid& grid, const std::vector<RigidB
 
 }  // namespace
 
-double stickingViscosity(double density, const Eigen::Vector3d& gravity, double cell_width) {
+double stickingViscosity(double density, double speed, double cell_width) {
   constexpr double kLeastLayer = 0.1;
-  return kLeastLayer * density * std::sqrt(gravity.norm() * cell_width * cell_width * cell_width);
+  return kLeastLayer * density * speed * cell_width;
 }
 
 std::vector<Matrix6d> attachStickingLiquid(const MacGrid& grid, const std::vector<RigidBody>& bodies,

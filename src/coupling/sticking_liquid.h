@@ -16,10 +16,11 @@
 
 namespace monolith {
 
-// Pa.s: a liquid that is less viscous slips past solids within the cell next to them, and viscosity only drags it along. In
-// the time in which gravity (m/s^2) moves something by a cell, the layer at a solid must grow through a good part of it:
-// mu >= 0.1 rho sqrt(g h^3). No time step is in it, or results would jump where the step is refined.
-double stickingViscosity(double density, const Eigen::Vector3d& gravity, double cell_width);
+// Pa.s: a liquid that is less viscous slips past solids within the cell next to them, and viscosity only drags it
+// along. In the time in which something that is as fast as `speed` (m/s) moves by a cell, the layer at a solid must
+// grow through a good part of it: mu >= 0.1 rho U h. No time step is in it, or results would jump where the step is
+// refined.
+double stickingViscosity(double density, double speed, double cell_width);
 
 // Moves the sticking part of `fluid` to the bodies' fractions (to nothing at walls). Returns the inertia M^ of the
 // liquid that each body has got, which moves as its points do; liquid_distance in cell widths with its halo filled.

@@ -13,6 +13,13 @@ namespace {
 constexpr double kLeastSlope = 0.25;      // of the level set, per cell
 constexpr float kWhollySolid = -0.4999F;  // cells: a wall that covers a cell reaches so far beyond its centre
 
+template <class Real>
+Eigen::Vector3d slopeOf(const Lattice& l, const std::vector<Real>& field, std::ptrdiff_t c) {
+  Eigen::Vector3d slope;
+  for (int a = 0; a < 3; ++a) slope[a] = 0.5 * (field[c + l.stride[a]] - field[c - l.stride[a]]);
+  return slope;
+}
+
 }  // namespace
 
 MacGrid makeGrid(const TankDescription& tank, const LiquidDescription& liquid) {
@@ -153,15 +160,15 @@ LiquidMotion liquidMotion(const MacGrid& grid, const FaceField<double>& liquid_m
   return motion;
 }
 
-double liquidPotential(const MacGrid& grid, const FreeSurface& surface, const std::vector<double>& cell_fluid,
-                       double density, const Eigen::Vector3d& gravity) {
+double liquidPotential(const MacGrid& grid, const FreeSurface& surface, const SolidFractions& solids, double density,
+                       const Eigen::Vector3d& gravity) {
   const Lattice& l = grid.lattice;
   std::vector<double> planes(l.n[2], 0.0);  // as above
 #pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int k = 0; k < l.n[2]; ++k) {
     for (int j = 0; j < l.n[1]; ++j) {
       const double* distance = surface.distance().data() + l.index(0, j, k);
-      const double* fluid = cell_fluid.data() + l.index(0, j, k);
+      const double* fluid = solids.cell_fluid.data() + l.index(0, j, k);
       // Parts of the cells, and their first moment along x.
       double sum = 0.0, moment = 0.0;
 #pragma omp simd reduction(+ : sum, moment)
@@ -170,6 +177,16 @@ double liquidPotential(const MacGrid& grid, const FreeSurface& surface, const st
         const double part = (below > 1.0 ? 1.0 : below) * fluid[i];
         sum += part;
         moment += i * part;
+      }
+      // The liquid of a cell that the surface or a solid cuts is not at its centre.
+      for (int i = 0; i < l.n[0]; ++i) {
+        const bool by_surface = std::abs(distance[i])<0.5, by_solid = fluid[i]> 0.0 && fluid[i] < 1.0;
+        if (!(by_surface || (by_solid && distance[i] < 0.0))) continue;
+        const auto c = l.index(i, j, k);
+        const double part = by_surface ? 0.5 - distance[i] : 1.0;
+        Eigen::Vector3d off = (part - 1.0) * surface.normal(c);
+        if (by_solid) off += (1.0 - fluid[i]) * slopeOf(l, solids.cell_distance, c).normalized();
+        planes[k] -= part * fluid[i] * gravity.dot(0.5 * grid.h * off);
       }
       planes[k] -= sum * gravity.dot(grid.cellCenter(0, j, k)) + moment * grid.h * gravity[0];
     }
@@ -193,9 +210,7 @@ std::vector<SurfacePoint> sampleSurface(const MacGrid& grid, const FreeSurface& 
         const Eigen::Vector3d normal = surface.normal(c);
         // The foot on the surface, if it lies in this cell's share: one point for a cell that the surface crosses. The
         // level set is a distance only in the mean: its slope there tells how far.
-        Eigen::Vector3d slope;
-        for (int a = 0; a < 3; ++a) slope[a] = 0.5 * (d[c + l.stride[a]] - d[c - l.stride[a]]);
-        const Eigen::Vector3d shift = -d[c] / std::max(slope.norm(), kLeastSlope) * normal;
+        const Eigen::Vector3d shift = -d[c] / std::max(slopeOf(l, d, c).norm(), kLeastSlope) * normal;
         if (shift.cwiseAbs().maxCoeff() > 0.5 + 1e-9) continue;
         const Eigen::Vector3d cells = Eigen::Vector3d(i + 0.5, j + 0.5, k + 0.5) + shift;
         SurfacePoint point;

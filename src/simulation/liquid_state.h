@@ -43,8 +43,8 @@ LiquidMotion liquidMotion(const MacGrid& grid, const FaceField<double>& liquid_m
                           double density);
 
 // J, zero at the world's origin.
-double liquidPotential(const MacGrid& grid, const FreeSurface& surface, const std::vector<double>& cell_fluid,
-                       double density, const Eigen::Vector3d& gravity);
+double liquidPotential(const MacGrid& grid, const FreeSurface& surface, const SolidFractions& solids, double density,
+                       const Eigen::Vector3d& gravity);
 
 std::vector<SurfacePoint> sampleSurface(const MacGrid& grid, const FreeSurface& surface,
                                         const std::vector<float>& cell_distance, const FaceField<double>& velocity);

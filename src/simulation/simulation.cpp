@@ -128,6 +128,21 @@ double Simulation::Impl::bodySpeed() const {
   return speed;
 }
 
+// To what gravity brings something within a cell. Without gravity, what there has been so far, of bodies, liquid, or
+// what a wrench would bring a body to within a cell: it doesn't fall again, so that liquid which slips doesn't come to
+// stick where a body slows down.
+double Simulation::Impl::typicalSpeed() const {
+  const double gravity = scene.gravity.norm();
+  if (gravity > 0.0) return std::sqrt(gravity * grid.h);
+  double speed = std::max({state.fastest, bodySpeed(), state.liquid_speed});
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+    const RigidBody& body = state.bodies[b];
+    if (body.motion != BodyMotion::kFree) continue;
+    speed = std::max(speed, std::sqrt(wrenches[b].force.norm() / body.mass * grid.h));
+  }
+  return speed;
+}
+
 // With the masses of the last solve, which only a step that is committed leaves.
 void Simulation::Impl::measureLiquidMotion(StepReport& step) {
   if (!hasLiquid()) return;
@@ -144,8 +159,7 @@ void Simulation::Impl::measureState(StepReport& step) const {
   step.potential_energy = 0.0;
   if (hasLiquid()) {
     step.liquid_volume = state.surface[0].volume(solids.cell_fluid);
-    step.potential_energy =
-        liquidPotential(grid, state.surface[0], solids.cell_fluid, scene.liquid.density, scene.gravity);
+    step.potential_energy = liquidPotential(grid, state.surface[0], solids, scene.liquid.density, scene.gravity);
   }
   for (const RigidBody& body : state.bodies) {
     if (body.motion != BodyMotion::kFree) continue;

@@ -45,6 +45,7 @@ struct SimulationState {
   std::vector<Vector6d> stuck_twists;             // of the liquid that sticks to each body, set or not since
   std::vector<Wrench> mean_liquid, mean_contact;  // over the last output step
   double liquid_speed = 0.0;                      // m/s, no component of the velocity is larger
+  double fastest = 0.0;                           // m/s, see typicalSpeed()
   double last_dt = 0.0;                           // s, of the last sub-step
   int euler_steps = kStepsAfterSet;               // sub-steps of backward Euler that are due
   std::size_t substeps = 0;
@@ -59,8 +60,7 @@ struct Simulation::Impl {
         grid(makeGrid(s.tank, s.liquid)),
         walls(makeWalls(s.tank)),
         sampler(grid),
-        system(grid, s.solver.name, s.solver.coupling, s.solver.discretisation,
-               stickingViscosity(s.liquid.density, s.gravity, grid.h)),
+        system(grid, s.solver.name, s.solver.coupling, s.solver.discretisation, 0.0),
         laws(s),
         viscosity_law(makeViscosityLaw(s.liquid)) {}
 
@@ -77,6 +77,7 @@ struct Simulation::Impl {
   bool nonNewtonian() const { return hasLiquid() && !viscosity_law.constant(); }
   bool noSlip() const { return viscosity_law.most() > 0.0; }
   double bodySpeed() const;
+  double typicalSpeed() const;
   double longestStep() const;
   bool substep(double dt, StepReport& report);
   bool secondOrder() const { return scene.solver.time_stepping == TimeStepping::kBdf2; }

@@ -13,6 +13,7 @@ namespace {
 
 // The first solve starts from nothing that it could correct later.
 constexpr double kFirstTolerance = 1e-4;
+constexpr double kLeastTolerance = 1e-12;   // of a first solve: round-off
 constexpr double kClosingTolerance = 1e-3;  // of a cell: a gap that closes by less within a step is no impact
 // Per cell, with which the liquid's motion goes on into the air where only its own slope tells how: of sqrt(gravity h),
 // the speed of the shortest waves, and of gravity. A wave of 32 cells length and an amplitude of a third of a cell has
@@ -126,6 +127,7 @@ CoupledReport Simulation::Impl::solveWithLiquid(const StepWeights& w, const std:
   {
     const StageClock clock(step.times.geometry);
     prepareSolve(w);
+    system.setStickingViscosity(stickingViscosity(liquid.density, typicalSpeed(), grid.h));
     const auto& distance = step_surface[0].distance();
     if (nonNewtonian()) {
       system.assembleVariable(solids, plan.bodies, distance, liquid.density, state.typical_viscosity, w.implicit);
@@ -143,7 +145,8 @@ CoupledReport Simulation::Impl::solveWithLiquid(const StepWeights& w, const std:
   std::vector<Contact> scaled = contacts;  // the solve divides gaps by what it takes for the step
   for (Contact& contact : scaled) contact.gap *= w.implicit / w.dt;
   CoupledOptions options;
-  options.tolerance = scene.solver.tolerance * (state.started ? 1.0 : kFirstTolerance);
+  const double wanted = scene.solver.tolerance;
+  options.tolerance = state.started ? wanted : std::min(wanted, std::max(kFirstTolerance * wanted, kLeastTolerance));
   options.maximum_iterations = scene.solver.maximum_iterations;
   CoupledState& solution = scratch.other;
   guess(w, free_velocity, solution);
@@ -281,6 +284,7 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
     step.status = SolveStatus::kNotConverged;
     return false;
   }
+  state.fastest = typicalSpeed();
   std::swap(state.coupled, scratch.other);
   if (nonNewtonian()) state.typical_viscosity = scratch.typical_viscosity;
   state.started = true;

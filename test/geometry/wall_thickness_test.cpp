@@ -37,9 +37,9 @@ TEST(WallThickness, OfAPlateIsThatBetweenItsLargeFaces) {
 }
 
 TEST(WallThickness, NoMoreIsLookedForThanIsAskedFor) {
-  for (const double t : wallThickness(*makeSignedDistance(boxShape({0.2, 0.2, 0.2}), 0.01), 0.01, 0.05)) {
-    EXPECT_EQ(t, 0.05);
-  }
+  const auto all = wallThickness(*makeSignedDistance(boxShape({0.2, 0.2, 0.2}), 0.01), 0.01, 0.05);
+  ASSERT_FALSE(all.empty());
+  for (const double thickness : all) EXPECT_EQ(thickness, 0.05);
 }
 
 // Two walls that meet at a corner, of two boxes.
