@@ -13,6 +13,8 @@ namespace {
 constexpr double kTravelToRedistance = 0.25;  // cells
 // Cells: a box of liquid whose face is so far within a solid or before it ends at the solid.
 constexpr double kDeepestFace = 0.5, kFarthestFace = 0.01;
+constexpr double kSlopeStep = 0.25;          // cells, outwards
+constexpr double kAlongSolid = 0.7;          // of that, by which the solid's surface is then farther above
 constexpr double kClearSlope = 1.0;          // of the distance from a solid, over two cells: half of what it is
 constexpr double kSampleBeyondSolid = 0.75;  // cells: outside, where the value is the liquid's own
 constexpr double kSlopeBeyondFoot = 1.0;     // cells: further out, where the slope is
@@ -49,10 +51,13 @@ FreeSurface::FreeSurface(const MacGrid& grid, double fill_height, const std::vec
   const auto isCovered = [&](const Eigen::Vector3d& x) {
     return std::any_of(all.begin(), all.end(), [&](const Filled& filled) { return filled.box.contains(x); });
   };
-  const auto onSolid = [&](const Eigen::Vector3d& x) {
+  // A face, of which `outward` is the normal, that lies along a solid: one that is cut by it bounds the liquid beside
+  // it.
+  const auto onSolid = [&](const Eigen::Vector3d& x, const Eigen::Vector3d& outward) {
     if (!solid_distance) return false;
     const double distance = solid_distance(x);
-    return distance > -kDeepestFace && distance < kFarthestFace;
+    if (!(distance > -kDeepestFace && distance < kFarthestFace)) return false;
+    return distance - solid_distance(x + kSlopeStep * grid.h * outward) > kAlongSolid * kSlopeStep;
   };
   // A box's faces on the tank's walls do not bound the liquid, what is beyond them never counts; nor do its faces where
   // they meet other liquid or lie on a solid. The level's does where a body touches it: beside the body it goes on.
@@ -68,7 +73,8 @@ FreeSurface::FreeSurface(const MacGrid& grid, double fill_height, const std::vec
         if (!l.periodic[a] && side * (wall - at) <= nudge) continue;
         Eigen::Vector3d foot = x;
         foot[a] = at + side * nudge;
-        if (within && (isCovered(foot) || (!filled.by_level && onSolid(foot)))) continue;
+        if (within && (isCovered(foot) || (!filled.by_level && onSolid(foot, side * Eigen::Vector3d::Unit(a)))))
+          continue;
         const double d = side * (x[a] - at) / grid.h;
         outside[a] = std::max(outside[a], d);
         inside = std::max(inside, d);
@@ -76,7 +82,8 @@ FreeSurface::FreeSurface(const MacGrid& grid, double fill_height, const std::vec
     }
     if (within) return inside;
     const Eigen::Vector3d nearest = x.cwiseMax(box.min()).cwiseMin(box.max());
-    const bool behind_wall = !filled.by_level && onSolid(nearest) && solid_distance(x) > 0.0;
+    const bool behind_wall =
+        !filled.by_level && onSolid(nearest, (x - nearest).normalized()) && solid_distance(x) > 0.0;
     return behind_wall ? kLevelSetBand : outside.norm();
   };
   // Each of the faces is at most as near as the surface: the nearest counts, of the boxes around a point or, outside, of

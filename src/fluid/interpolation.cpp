@@ -15,6 +15,7 @@ inline AxisStencil locate(const Lattice& l, int axis, double x) {
   AxisStencil s;
   if (l.periodic[axis]) {
     x -= l.n[axis] * std::floor(x / l.n[axis]);
+    x = std::clamp(x, 0.0, static_cast<double>(l.n[axis]));  // round-off of what is absurdly far away
     s.base = std::min(static_cast<int>(x), l.n[axis] - 1);
   } else {
     // With a cubic's nodes around it: the halo has two below and one beyond the last face.

@@ -40,7 +40,7 @@ TankNode::TankNode(ros::NodeHandle& global, ros::NodeHandle& local, ros::Callbac
   for (const std::string& warning : control_.simulation().warnings()) ROS_WARN_STREAM(warning);
   const double possible = 1.0 / scene.time_step;
   if (options.state_rate > possible * (1.0 + 1e-9)) {
-    ROS_WARN(
+    ROS_INFO(
         "~state_rate: %g Hz asked, but the scene's time_step of %g s gives at most %g Hz: publishing after every step",
         options.state_rate, scene.time_step, possible);
   }

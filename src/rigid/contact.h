@@ -1,6 +1,6 @@
 #pragma once
 // Contact detection: pairs of points where bodies touch or may touch within a step, each a row of the
-// normal contact Jacobian J_n. Broad and narrow phase by FCL; sign and manifold by the distance fields.
+// normal contact Jacobian J_n. Broad phase by FCL; sign and manifold by convex shapes and the distance fields.
 
 #include <Eigen/Geometry>
 #include <string>

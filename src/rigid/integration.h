@@ -16,8 +16,8 @@ struct Wrench {
 // that is not free comes back unchanged.
 Vector6d freeTwist(const RigidBody& body, const Eigen::Vector3d& gravity, const Wrench& wrench, double dt);
 
-// Moves the pose by the body's twist over dt: exponential map about the centre of mass, quaternion made unit. A body that is
-// prescribed to move in place stays.
+// Moves the pose by the body's twist over dt: exponential map about the centre of mass, of a prescribed body about the
+// origin of its frame, quaternion made unit. A body that is prescribed to move in place stays.
 void advancePose(RigidBody& body, double dt);
 
 // A free body over a step of second order (simulation/time_stepping.h), but for what the solve adds.

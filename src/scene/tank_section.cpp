@@ -14,6 +14,7 @@ using Eigen::Vector3d;
 constexpr double kCellTolerance = 1e-6;  // of a cell
 constexpr int kLeastCells = 4;           // along an axis
 constexpr double kFarthestCells = 1e9;   // of the origin: beyond, a cell is lost in the round-off of positions
+constexpr double kLeastTolerance = 1e-12;
 constexpr double kBytesPerCell = 1700.0;  // at the peak of a step, viscous, one body: ./tank bench
 
 char axisName(int axis) { return "xyz"[axis]; }
@@ -153,7 +154,9 @@ void readSolver(const YAML::Node& node, SolverDescription& solver, Violations& v
     solver.time_stepping = TimeStepping::kBackwardEuler;
   }
   map.read("tolerance", solver.tolerance, Range::kPositive);
-  if (solver.tolerance >= 1.0) map.fail("tolerance", "a relative residual below 1");
+  if (!(solver.tolerance >= kLeastTolerance && solver.tolerance < 1.0)) {
+    map.fail("tolerance", "a relative residual of at least 1e-12, round-off, and below 1");
+  }
   map.read("maximum_iterations", solver.maximum_iterations, 1);
   map.read("threads", solver.threads, 0, kMostThreads);
   map.read("cfl", solver.cfl, Range::kPositive);

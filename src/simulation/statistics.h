@@ -25,7 +25,7 @@ struct ModelChoice {  // what the last sub-step modelled, chosen from the state;
   bool viscosity = false;
   bool non_newtonian = false;
   bool free_surface = false;
-  int time_order = 1;      // of its time stepping; 1 after an impact or a start also where 2 was asked for
+  int time_order = 1;      // of its time stepping; 1 also where 2 was asked for: Simulation::Impl::weights()
   int coupled_bodies = 0;  // bodies with at least one coupling row
   int contacts = 0;
   bool friction = false;  // at least one of the contacts has a friction coefficient
@@ -45,12 +45,12 @@ struct StepReport {
   double residual = 0.0;           // relative, worst of the sub-steps
   double contact_residual = 0.0;   // of Coulomb's law, relative, worst of the sub-steps
   double divergence = 0.0;         // 1/s, largest in a liquid cell
-  double maximum_speed = 0.0;      // m/s, in the liquid
+  double maximum_speed = 0.0;      // m/s, no liquid is faster: norm of the largest components
   double liquid_volume = 0.0;      // m^3
   double volume_correction = 0.0;  // m^3, signed, that the surface was corrected by in this step
-  double kinetic_energy = 0.0;     // J, liquid and bodies
+  double kinetic_energy = 0.0;     // J, liquid and free bodies
   Eigen::Vector3d liquid_momentum = Eigen::Vector3d::Zero();  // kg m/s, in W
-  double potential_energy = 0.0;                              // J, liquid and bodies, zero at the world's origin
+  double potential_energy = 0.0;                              // J, liquid and free bodies, zero at the world's origin
   double penetration = 0.0;                                   // m, deepest
   ModelChoice model;
   StageTimes times;

@@ -96,6 +96,18 @@ TEST(Surface, ShortWavesKeepTheirHeightWhereverTheSurfaceLiesInItsCells) {
   }
 }
 
+// A box of liquid ends at a solid that it lies against, not at one that its surface is cut by.
+TEST(Surface, ABoxOfLiquidAroundAFloatingBodyIsAsStillAsALevel) {
+  Scene by_level = water({16, 16, 16}, 0.02);
+  by_level.bodies = {sphereBody("ball", 0.06, 500.0, {0.16, 0.16, 0.16})};
+  Scene by_box = by_level;
+  by_level.liquid.fill_level = 0.16;
+  by_box.liquid.boxes = {Eigen::AlignedBox3d(Vector3d::Zero(), Vector3d(0.32, 0.32, 0.16))};
+  const double still = Simulation(by_level).step().maximum_speed;
+  EXPECT_LT(still, 1e-3);
+  EXPECT_LT(Simulation(by_box).step().maximum_speed, still + 1e-5);
+}
+
 // A jet rises along the far wall and falls back: thin sheets, in which no pressure holds the liquid back.
 TEST(Surface, ADamThatBreaksGainsNoEnergy) {
   for (const double dt : {0.02, 0.005}) {
