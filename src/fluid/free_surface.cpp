@@ -10,7 +10,7 @@
 namespace monolith {
 namespace {
 
-constexpr double kTravelToRedistance = 0.25;  // cells
+constexpr double kTravelToRedistance = 1.5;  // cells
 // Cells: a box of liquid whose face is so far within a solid or before it ends at the solid.
 constexpr double kDeepestFace = 0.5, kFarthestFace = 0.01;
 constexpr double kSlopeStep = 0.25;          // cells, outwards

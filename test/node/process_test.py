@@ -219,7 +219,7 @@ class ProcessTest(unittest.TestCase):
 
     def testStepThatFailsPausesAndKeepsTheState(self):
         def unsolvable(scene):
-            scene['solver'].update(tolerance=1e-15, maximum_iterations=1)
+            scene['solver'].update(tolerance=1e-12, maximum_iterations=1)
         statistics, log = Collector(NODE + '/statistics', Statistics), Collector('/rosout', Log)
         diagnostics = Collector('/diagnostics', DiagnosticArray)
         process = start('_scene:=' + self.sceneWith(unsolvable), '_start_paused:=true', '_duration:=0')
