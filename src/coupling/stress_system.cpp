@@ -14,7 +14,7 @@ std::vector<int> numbered(const Lattice& l, const std::vector<std::ptrdiff_t>& a
 }
 
 template <class Function>
-void forEachSample(const Lattice& l, Function&& f) {
+void forEachIndex(const Lattice& l, Function&& f) {
   for (int k = 0; k < l.faceEnd(2); ++k) {
     for (int j = 0; j < l.faceEnd(1); ++j) {
       for (int i = 0; i < l.faceEnd(0); ++i) f(l.index(i, j, k));
@@ -31,7 +31,7 @@ StressSystem::StressSystem(const StepProblem& problem) {
   std::vector<double> masses;
   for (int a = 0; a < 3; ++a) {
     std::vector<std::ptrdiff_t> at;
-    forEachSample(l, [&](std::ptrdiff_t f) {
+    forEachIndex(l, [&](std::ptrdiff_t f) {
       if (c.mass[a][f] > 0.0) at.push_back(f);
     });
     face_number[a] = numbered(l, at);
@@ -54,7 +54,7 @@ StressSystem::StressSystem(const StepProblem& problem) {
   // Samples of one kind: their rows of G, and the number of each for the bodies' rows.
   const auto addSamples = [&](auto&& has, auto&& rows_of, const std::vector<BodyRow>& body_rows, double sign) {
     std::vector<int> number(l.size, -1);
-    forEachSample(l, [&](std::ptrdiff_t s) {
+    forEachIndex(l, [&](std::ptrdiff_t s) {
       const double w = has(s);
       if (!(w > 0.0)) return;
       rows_of(s);
@@ -93,7 +93,7 @@ StressSystem::StressSystem(const StepProblem& problem) {
   stresses = row;
   // Pressures: rows of -C, which have no weight.
   std::vector<int> number(l.size, -1);
-  forEachSample(l, [&](std::ptrdiff_t s) {
+  forEachIndex(l, [&](std::ptrdiff_t s) {
     if (!c.has_pressure[s]) return;
     for (int a = 0; a < 3; ++a) {
       add(a, s + l.stride[a], -c.open[a][s + l.stride[a]]);

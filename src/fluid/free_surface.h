@@ -10,25 +10,20 @@
 // In solids the level set is continued from the liquid or the air next to them. What lies on the two sides of a wall
 // has nothing to do with each other: where its sign changes within a solid there is no surface.
 
-#include <functional>
 #include <vector>
 
+#include "fluid/filled_boxes.h"
+#include "fluid/level_set.h"
 #include "fluid/mac_grid.h"
 #include "solve/staggered_operator.h"
 
 namespace monolith {
 
-// Half-width, in cells, of the band around the surface in which the level set is a distance; beyond it is just as large
-// as that, which is further than anyone looks.
-constexpr double kLevelSetBand = 6.0;
-constexpr double kLevelSetFar = 1e3;  // cell widths: not known yet, or no liquid
-
 class FreeSurface {
  public:
-  // Liquid below `fill_height` (m above the tank's floor) and in boxes (W). solid_distance: of points (W), in cell
-  // widths; where the faces of boxes lie on solids they do not bound the liquid. May be missing.
+  // Liquid below `fill_height` (m above the tank's floor) and in boxes (W), see FilledBoxes.
   FreeSurface(const MacGrid& grid, double fill_height, const std::vector<Eigen::AlignedBox3d>& boxes,
-              const std::function<double(const Eigen::Vector3d&)>& solid_distance = nullptr);
+              const SolidDistance& solid_distance = nullptr);
 
   FreeSurface(const FreeSurface&) = default;
   FreeSurface& operator=(const FreeSurface& other);

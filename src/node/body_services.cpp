@@ -34,9 +34,7 @@ bool BodyServices::answer(const char* service, Response& response, const std::fu
   try {
     action();
     response.success = true;
-  } catch (const RequestError& error) {
-    response.status_message = error.what();
-  } catch (const std::exception& error) {  // refused by the simulation, or a time that ROS cannot hold
+  } catch (const std::exception& error) {  // bad request, refused by the simulation, or a time that ROS cannot hold
     response.status_message = error.what();
   }
   if (!response.success) hooks_.refuse(std::string("~") + service + ": " + response.status_message);

@@ -122,7 +122,7 @@ void readMotion(const YamlMap& map, BodyDescription& body, Violations& violation
   prescribed.read<6>("amplitude", body.prescribed.amplitude);
   prescribed.read("frequency", body.prescribed.frequency, Range::kNotNegative);
   prescribed.read("phase", body.prescribed.phase, Range::kFinite);
-  body.prescribed.in_place = prescribed.readWord("in_place", "false", {"false", "true"}) == "true";
+  prescribed.read("in_place", body.prescribed.in_place);
   if (!body.prescribed.amplitude.isZero(0.0) && body.prescribed.frequency == 0.0) {
     prescribed.fail("amplitude", "a frequency > 0 beside it");
   }

@@ -14,6 +14,8 @@ using Eigen::Vector3d;
 constexpr double kCellTolerance = 1e-6;  // of a cell
 constexpr int kLeastCells = 4;           // along an axis
 constexpr double kFarthestCells = 1e9;   // of the origin: beyond, a cell is lost in the round-off of positions
+constexpr double kDensest = 1e9;         // kg/m^3
+constexpr double kMostViscous = 1e15;    // Pa.s
 constexpr double kLeastTolerance = 1e-12;
 constexpr double kBytesPerCell = 1700.0;  // at the peak of a step, viscous, one body: ./tank bench
 
@@ -89,7 +91,11 @@ void readLiquid(const YAML::Node& node, const TankDescription& tank, bool tank_u
                 Violations& violations) {
   const YamlMap map(node, "liquid", {"density", "dynamic_viscosity", "rheology", "fill_level", "boxes"}, violations);
   map.read("density", liquid.density, Range::kPositive);
+  if (!(liquid.density >= 1.0 / kDensest && liquid.density <= kDensest)) {
+    map.fail("density", "from 1e-9 to 1e9 kg/m^3");
+  }
   map.read("dynamic_viscosity", liquid.dynamic_viscosity, Range::kNotNegative);
+  if (!(liquid.dynamic_viscosity <= kMostViscous)) map.fail("dynamic_viscosity", "at most 1e15 Pa.s");
   if (map.has("rheology")) readRheology(map.get("rheology"), liquid.rheology, violations);
   if (liquid.rheology.law != RheologyDescription::Law::kNewtonian && map.has("dynamic_viscosity")) {
     map.fail("dynamic_viscosity", "none, viscosity is that of liquid.rheology");

@@ -149,6 +149,12 @@ void YamlMap::read(const std::string& key, std::string& out) const {
   out = node.Scalar();
 }
 
+void YamlMap::read(const std::string& key, bool& out) const {
+  if (!has(key)) return;
+  const YAML::Node node = get(key);
+  if (!node.IsScalar() || !YAML::convert<bool>::decode(node, out)) fail(key, "true or false");
+}
+
 void YamlMap::read(const std::string& key, bool (&out)[3]) const {
   if (!has(key)) return;
   const YAML::Node node = get(key);

@@ -49,6 +49,7 @@ class YamlMap {
   void read(const std::string& key, double& out, Range range) const;
   void read(const std::string& key, int& out, int least, int most = std::numeric_limits<int>::max()) const;
   void read(const std::string& key, std::string& out) const;
+  void read(const std::string& key, bool& out) const;
   void read(const std::string& key, bool (&out)[3]) const;
   // Size N vectors, every component within the range.
   template <int N>

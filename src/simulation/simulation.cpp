@@ -34,7 +34,7 @@ double kineticEnergy(const RigidBody& body) {
 }
 
 // Of points in W from the nearest body, in cell widths; infinite where that is more than a cell.
-std::function<double(const Eigen::Vector3d&)> solidDistance(const MacGrid& grid, const std::vector<RigidBody>& bodies) {
+SolidDistance solidDistance(const MacGrid& grid, const std::vector<RigidBody>& bodies) {
   struct Placed {
     std::shared_ptr<const SignedDistance> shape;
     Eigen::Isometry3d X_BW;

@@ -48,7 +48,6 @@ struct Lattice {
   // Where the plane of cells or faces k begins in a field, halo and all.
   std::ptrdiff_t planeBegin(int k) const { return stride[2] * (k + kLowHalo); }
   bool anyPeriodic() const { return periodic[0] || periodic[1] || periodic[2]; }
-  long cells() const { return static_cast<long>(n[0]) * n[1] * n[2]; }
 };
 
 // Planes of cells or faces, k from `first` to before `end`: those that hold all unknowns, beyond which nobody looks.

@@ -191,6 +191,8 @@ TEST_F(SceneFile, EachViolationNamesLineKeyValueAndExpectation) {
       {kTank + "solver: {time_stepping: bdf3}\n", {"solver.time_stepping: value bdf3", "backward_euler", "bdf2"}},
       {kTank + "solver: {tolerance: 2}\n", {"solver.tolerance: value 2"}},
       {kTank + "solver: {tolerance: 0}\n", {"solver.tolerance: value 0"}},
+      {kTank + "liquid: {density: 1e-10}\n", {"liquid.density: value 1e-10", "from 1e-9 to 1e9"}},
+      {kTank + "liquid: {dynamic_viscosity: 1e300}\n", {"liquid.dynamic_viscosity: value 1e300", "at most 1e15"}},
       {kTank + "solver: {tolerance: 1e-13}\n", {"solver.tolerance: value 1e-13", "at least 1e-12"}},
       {kTank + "solver: {maximum_iterations: 0}\n", {"solver.maximum_iterations: value 0", "from 1 to"}},
       {kTank + "solver: {maximum_iterations: 2147483648}\n",
