@@ -188,6 +188,9 @@ void Simulation::Impl::takeMeans(const StepWeights& w, const std::vector<Wrench>
 }
 
 void Simulation::Impl::moveLiquid(const StepWeights& w, StepReport& step) {
+  std::swap(scratch.known_before, state.known);
+  markResolved(system.problem(), state.known);
+  limitSlivers(solids, grid, state.coupled.velocity, state.known);
   step.maximum_speed = largestSpeed(state.coupled.velocity);
   // As far as a trajectory of this step reaches, and no further than the tank.
   const int most = *std::max_element(grid.lattice.n.begin(), grid.lattice.n.end());
@@ -199,8 +202,6 @@ void Simulation::Impl::moveLiquid(const StepWeights& w, StepReport& step) {
   const double gravity = scene.gravity.norm();
   const LiquidField velocity{&state.coupled.velocity, &state.coupled.twists,
                              kSteepestVelocity * std::sqrt(gravity * grid.h)};
-  std::swap(scratch.known_before, state.known);
-  markResolved(system.problem(), state.known);
   if (!secondOrder()) {
     complete({velocity}, state.known);
   } else {

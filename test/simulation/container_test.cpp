@@ -135,7 +135,7 @@ TEST(Container, ThatTurnsShootsNoLiquidAbout) {
   while (simulation.time() < 2.5) {
     const StepReport report = simulation.step();
     ASSERT_TRUE(report.committed()) << report.message;
-    EXPECT_LT(report.maximum_speed, 6.0 * corner) << report.time;
+    EXPECT_LT(report.maximum_speed, 5.0 * corner) << report.time;
   }
 }
 
