@@ -17,8 +17,8 @@ constexpr double kLeastFluid = 0.02;
 // A face's centre nearer to a surface than this, in cell widths, lies on it: what is left of its share of liquid would
 // be the only way into the cell behind it, a pivot as small as round-off.
 constexpr double kOnSurface = 1e-3;
-constexpr double kUncut =
-    0.9;                    // cell widths: a surface farther than half the diagonal from its centre does not cut a cell
+// Cell widths: a surface farther than half the diagonal from its centre does not cut a cell.
+constexpr double kUncut = 0.9;
 constexpr int kMargin = 2;  // cells around a body in which its distance is wanted
 constexpr double kHardlyMoved = 1e-6;  // cell widths, of any of its points: far below what the solve resolves
 

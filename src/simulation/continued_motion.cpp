@@ -140,13 +140,15 @@ void continueIntoAir(const Lattice& l, const SolidFractions& solids, const std::
 
 void limitSlivers(const SolidFractions& solids, const MacGrid& grid, FaceField<double>& velocity, FaceMask& known) {
   const Lattice& l = grid.lattice;
+  const std::vector<std::uint8_t> near_body = rowsOfBodies(l, solids.bodies);
   for (int a = 0; a < 3; ++a) {
     fillHalo(l, velocity[a]);
     fillHalo(l, known[a]);
     const auto isSliver = [&](std::ptrdiff_t f) {
       return solids.distance[a][f] <= 0.0F && solids.fluid[a][f] > 0.0 && solids.fluid[a][f] < kSliver;
     };
-    forEachRow(l, [&](std::ptrdiff_t row, int, int) {
+    forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
+      if (!near_body[j + static_cast<std::size_t>(l.faceEnd(1)) * k]) return;
       for (auto f = row; f < row + l.faceEnd(0); ++f) {
         if (!known[a][f] || !isSliver(f)) continue;
         double least = std::numeric_limits<double>::infinity(), most = -least;
