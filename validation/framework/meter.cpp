@@ -18,8 +18,12 @@ double cpuSeconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-Meter::Meter(std::function<void(double)> progress)
-    : progress_(std::move(progress)), cpu_start_(cpuSeconds()), wall_start_(wallSeconds()) {}
+Meter::Meter(std::function<void(double)> progress) : progress_(std::move(progress)) { restart(); }
+
+void Meter::restart() {
+  cpu_start_ = cpuSeconds();
+  wall_start_ = wallSeconds();
+}
 
 double Meter::cpu() const { return cpuSeconds() - cpu_start_; }
 double Meter::wall() const { return wallSeconds() - wall_start_; }

@@ -28,11 +28,13 @@ class Meter {
   // Steps until simulation.time() reaches `time` (s), calling `after` (may be empty) after each.
   void advance(Simulation& simulation, double time, const std::function<void(const StepReport&)>& after = {});
   void progress(double part) const;
+  // Costs count from here: those so far were of a reference.
+  void restart();
   // The number of cells that a whole number of them in the tank led to, where it is not what the numerics ask for.
   void setCellsAcross(double cells) { cells_across_ = cells; }
 
-  double cpu() const;                                   // s, since construction
-  double wall() const;                                  // s, since construction
+  double cpu() const;                                   // s, since construction or restart
+  double wall() const;                                  // s, likewise
   double simulated() const { return simulated_; }       // s
   double dt() const { return dt_; }                     // s, of the last step
   double cellsAcross() const { return cells_across_; }  // 0: as asked for
@@ -42,8 +44,8 @@ class Meter {
 
  private:
   std::function<void(double)> progress_;
-  double cpu_start_;
-  double wall_start_;
+  double cpu_start_ = 0.0;
+  double wall_start_ = 0.0;
   double simulated_ = 0.0;
   double dt_ = 0.0;
   double cells_across_ = 0.0;
