@@ -63,9 +63,7 @@ class BodyColumns<Real>::Collector {
     const Lattice& l = lattice_;
     if (!l.anyPeriodic()) return f;
     std::array<int, 3> at = l.cell(f);
-    for (int a = 0; a < 3; ++a) {
-      if (l.periodic[a]) at[a] = (at[a] + l.n[a]) % l.n[a];
-    }
+    for (int a = 0; a < 3; ++a) at[a] = l.wrapped(a, at[a]);
     return l.index(at[0], at[1], at[2]);
   }
 

@@ -38,15 +38,9 @@ void appendPlane(const MacGrid& grid, const BodyFractions& f, int body, int k, c
   const Lattice& l = grid.lattice;
   for (int j = 0; f.within(1, j + 1) >= 0 && j < f.count[1]; ++j) {
     for (int i = 0; f.within(0, i + 1) >= 0 && i < f.count[0]; ++i) {
-      int at[3] = {f.low[0] + i, f.low[1] + j, f.low[2] + k};
-      int cell[3];
-      bool outside = false;
-      for (int a = 0; a < 3; ++a) {
-        cell[a] = l.periodic[a] ? ((at[a] % l.n[a]) + l.n[a]) % l.n[a] : at[a];
-        outside = outside || cell[a] < 0 || cell[a] >= l.n[a];
-      }
-      if (outside) continue;
-      const auto c = l.index(cell[0], cell[1], cell[2]);
+      const std::array<int, 3> at = {f.low[0] + i, f.low[1] + j, f.low[2] + k};
+      const auto c = l.indexInTank(at);
+      if (c < 0) continue;
       Vector6d row = Vector6d::Zero();
       for (int a = 0; a < 3; ++a) {
         int next[3] = {i, j, k};

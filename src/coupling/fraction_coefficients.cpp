@@ -14,18 +14,6 @@ constexpr double kLeastFluid = 1e-3;
 // Less liquid than this in a face is none: no tiny pivots.
 constexpr double kLeastLiquid = 1e-3;
 
-// Place of a cell of a body's box in the grid; -1 where neither cells nor, along the axes in `beyond`, edges are.
-std::ptrdiff_t gridIndex(const Lattice& l, Cell at, const std::array<bool, 3>& beyond) {
-  for (int a = 0; a < 3; ++a) {
-    if (l.periodic[a]) {
-      at[a] = ((at[a] % l.n[a]) + l.n[a]) % l.n[a];
-    } else if (at[a] < 0 || at[a] >= l.n[a] + (beyond[a] ? 1 : 0)) {
-      return -1;
-    }
-  }
-  return l.index(at[0], at[1], at[2]);
-}
-
 // The rows of one body, from its fractions of the faces around each sample.
 class RowBuilder {
  public:
@@ -35,7 +23,7 @@ class RowBuilder {
 
   // W(c + a) row(x + h a) - W(c) row(x): along its own axis a rigid motion does not change.
   void addNormal(int a, const Cell& local, const Cell& at, std::vector<BodyRow>& out) const {
-    const auto c = gridIndex(grid_.lattice, at, {false, false, false});
+    const auto c = grid_.lattice.indexInTank(at);
     if (c < 0 || !(coefficients_.normal[a][c] > 0.0)) return;
     Cell next = local;
     ++next[a];
@@ -48,9 +36,7 @@ class RowBuilder {
   // fractions times row(x), plus their mean times the rotation's part; the two rotations are opposite.
   void addShear(int pair, const Cell& local, const Cell& at, std::vector<BodyRow>& out) const {
     const auto [a, b] = kShearPairs[pair];
-    std::array<bool, 3> beyond = {false, false, false};
-    beyond[a] = beyond[b] = true;
-    const auto e = gridIndex(grid_.lattice, at, beyond);
+    const auto e = edgeIndex(grid_.lattice, pair, at);
     if (e < 0 || !(coefficients_.shear[pair][0][e] > 0.0)) return;
     Cell below_a = local, below_b = local;
     --below_b[b];

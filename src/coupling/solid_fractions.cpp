@@ -22,18 +22,9 @@ constexpr double kUncut = 0.9;
 constexpr int kMargin = 2;  // cells around a body in which its distance is wanted
 constexpr double kHardlyMoved = 1e-6;  // cell widths, of any of its points: far below what the solve resolves
 
-int wrapped(int index, int n) { return ((index % n) + n) % n; }
-
-// Cell of the grid that (i, j, k), perhaps in a periodic image, stands for; -1 outside the tank.
-std::ptrdiff_t gridIndex(const Lattice& l, std::array<int, 3> cell, int face_axis) {
-  for (int a = 0; a < 3; ++a) {
-    if (l.periodic[a]) {
-      cell[a] = wrapped(cell[a], l.n[a]);
-    } else if (cell[a] < 0 || cell[a] >= (a == face_axis ? l.faceEnd(a) : l.n[a])) {
-      return -1;
-    }
-  }
-  return l.index(cell[0], cell[1], cell[2]);
+// Index of a face that may lie in a periodic image; -1 outside the tank.
+std::ptrdiff_t faceIndex(const Lattice& l, const std::array<int, 3>& at, int axis) {
+  return l.indexInTank(at, {axis == 0, axis == 1, axis == 2});
 }
 
 // A box longer than a period holds cells of the grid twice.
@@ -76,7 +67,7 @@ void forEachFace(const Lattice& l, const BodyFractions& box, int axis, Function&
     for (int j = 0; j < box.count[1]; ++j) {
       for (int i = 0; i < box.count[0]; ++i) {
         if (box.face[axis][box.local(i, j, k)] == 0.0) continue;
-        f(i, j, k, gridIndex(l, {box.low[0] + i, box.low[1] + j, box.low[2] + k}, axis));
+        f(i, j, k, faceIndex(l, {box.low[0] + i, box.low[1] + j, box.low[2] + k}, axis));
       }
     }
   }
@@ -90,7 +81,7 @@ std::vector<std::uint8_t> rowsOfBodies(const Lattice& l, const std::vector<BodyF
   for (const BodyFractions& body : bodies) {
     for (int k = body.low[2]; k < body.low[2] + body.count[2]; ++k) {
       for (int j = body.low[1]; j < body.low[1] + body.count[1]; ++j) {
-        const int at_j = l.periodic[1] ? wrapped(j, rows) : j, at_k = l.periodic[2] ? wrapped(k, planes) : k;
+        const int at_j = l.wrapped(1, j), at_k = l.wrapped(2, k);
         if (at_j < 0 || at_j >= rows || at_k < 0 || at_k >= planes) continue;
         out[at_j + static_cast<std::size_t>(rows) * at_k] = 1;
       }
@@ -253,13 +244,13 @@ void SolidSampler::addBody(const BodySample& sample, int index, SolidFractions& 
         const std::size_t c = f.local(i, j, k);
         const std::array<int, 3> cell = {f.low[0] + i, f.low[1] + j, f.low[2] + k};
         for (int a = 0; a < 3; ++a) {
-          const auto g = gridIndex(l, cell, a);
+          const auto g = faceIndex(l, cell, a);
           if (g >= 0 && sample.distance[a][c] < out.distance[a][g]) {
             out.distance[a][g] = std::max(sample.distance[a][c], -SolidFractions::kFarthest);
             out.owner[a][g] = static_cast<std::int16_t>(index);
           }
         }
-        const auto g = gridIndex(l, cell, -1);
+        const auto g = l.indexInTank(cell);
         if (g >= 0) {
           out.cell_distance[g] = std::min(out.cell_distance[g], sample.cell_distance[c]);
           out.cell_fluid[g] = std::max(0.0, out.cell_fluid[g] - f.cell[c]);

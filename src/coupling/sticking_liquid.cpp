@@ -23,9 +23,8 @@ constexpr double kExtraAtWall = 1.0 / 6.0;
 // Place of a cell in a body's box, in the periodic image that is nearest to the body; false outside.
 bool localCell(const Lattice& l, const BodyFractions& f, const std::array<int, 3>& cell, std::array<int, 3>& local) {
   for (int a = 0; a < 3; ++a) {
-    local[a] = cell[a] - f.low[a];
+    local[a] = l.wrapped(a, cell[a] - f.low[a]);
     if (l.periodic[a]) {
-      local[a] = ((local[a] % l.n[a]) + l.n[a]) % l.n[a];
       // A box longer than the period holds a cell twice.
       const auto offCentre = [&](int at) { return std::abs(2 * at - f.count[a] + 1); };
       while (local[a] + l.n[a] < f.count[a] && offCentre(local[a] + l.n[a]) < offCentre(local[a])) local[a] += l.n[a];

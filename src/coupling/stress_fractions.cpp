@@ -14,16 +14,8 @@ using Cell = std::array<int, 3>;
 constexpr double kReach = 0.87;  // cell widths, half the diagonal
 
 // Index of a cell (pair < 0) or an edge, perhaps in a periodic image; -1 outside the tank.
-std::ptrdiff_t sampleIndex(const Lattice& l, Cell at, int pair) {
-  for (int a = 0; a < 3; ++a) {
-    const bool across = pair >= 0 && (kShearPairs[pair][0] == a || kShearPairs[pair][1] == a);
-    if (l.periodic[a]) {
-      at[a] = ((at[a] % l.n[a]) + l.n[a]) % l.n[a];
-    } else if (at[a] < 0 || at[a] >= l.n[a] + (across ? 1 : 0)) {
-      return -1;
-    }
-  }
-  return l.index(at[0], at[1], at[2]);
+std::ptrdiff_t sampleIndex(const Lattice& l, const Cell& at, int pair) {
+  return pair < 0 ? l.indexInTank(at) : edgeIndex(l, pair, at);
 }
 
 // Every sample of a body's box, as f(local index, position in the grid).
@@ -50,7 +42,7 @@ void sampleBody(const MacGrid& grid, const RigidBody& body, const BodyFractions&
   forEachInBox(box, [&](const Cell& local, const Cell& at) {
     const std::size_t c = box.local(local[0], local[1], local[2]);
     octants[c].fill(0.0);
-    if (sampleIndex(l, at, -1) < 0) return;
+    if (l.indexInTank(at) < 0) return;
     const Eigen::Vector3d x_B = X_BW * grid.cellCenter(at[0], at[1], at[2]);
     const double distance = body.distance->distance(x_B) / grid.h;
     if (distance > kReach) return;
@@ -63,7 +55,7 @@ void sampleBody(const MacGrid& grid, const RigidBody& body, const BodyFractions&
   });
   forEachInBox(box, [&](const Cell& local, const Cell& at) {
     for (int p = 0; p < 3; ++p) {
-      if (sampleIndex(l, at, p) < 0) continue;
+      if (edgeIndex(l, p, at) < 0) continue;
       const auto [a, b] = kShearPairs[p];
       double sum = 0.0;
       for (int quarter = 0; quarter < 4; ++quarter) {
@@ -126,7 +118,7 @@ void emptyTank(const Lattice& l, StressFractions& out) {
 }  // namespace
 
 double edgeInTank(const Lattice& l, int pair, const std::array<int, 3>& at) {
-  if (sampleIndex(l, at, pair) < 0) return 0.0;
+  if (edgeIndex(l, pair, at) < 0) return 0.0;
   double part = 1.0;
   for (const int a : kShearPairs[pair]) {
     if (!l.periodic[a] && (at[a] == 0 || at[a] == l.n[a])) part *= 0.5;

@@ -55,7 +55,7 @@ class RowBuilder {
 std::vector<char> nearBodies(const Lattice& l, const SolidFractions& solids) {
   std::vector<char> near(l.size, 0);
   const auto inside = [&](int at, int axis) {
-    if (l.periodic[axis]) return (at % l.n[axis] + l.n[axis]) % l.n[axis];
+    at = l.wrapped(axis, at);
     return at < l.faceEnd(axis) ? at : -1;
   };
   for (const BodyFractions& f : solids.bodies) {

@@ -76,7 +76,7 @@ class RowRanges {
 
  private:
   int inside(int at, int axis) const {
-    if (l_.periodic[axis]) return (at + l_.n[axis]) % l_.n[axis];
+    at = l_.wrapped(axis, at);
     return at < l_.n[axis] ? at : -1;
   }
 
@@ -94,7 +94,7 @@ class SolidCells {
   bool isSolid(std::array<int, 3> cell, int axis = 0, int steps = 0) const {
     if (distance_.empty()) return false;
     if (isBeyondTank(cell, axis, steps)) return true;
-    cell[axis] = wrapped(axis, cell[axis] + steps);
+    cell[axis] = l_.wrapped(axis, cell[axis] + steps);
     return distance_[l_.index(cell[0], cell[1], cell[2])] <= 0.0F;
   }
 
@@ -114,7 +114,7 @@ class SolidCells {
       for (int away = -kWayAround; away <= kWayAround; ++away) {
         if (b == axis || away == 0 || isBeyondTank(cell, b, away)) continue;
         std::array<int, 3> beside = cell;
-        beside[b] = wrapped(b, cell[b] + away);
+        beside[b] = l_.wrapped(b, cell[b] + away);
         bool open = true;
         for (int at = low; at <= high && open; ++at) open = !isSolid(beside, axis, at);
         if (open) return false;
@@ -128,7 +128,6 @@ class SolidCells {
     const int at = cell[axis] + steps;
     return !l_.periodic[axis] && (at < 0 || at >= l_.n[axis]);
   }
-  int wrapped(int axis, int at) const { return (at % l_.n[axis] + l_.n[axis]) % l_.n[axis]; }
 
   const Lattice& l_;
   const std::vector<float>& distance_;

@@ -45,6 +45,17 @@ struct Lattice {
   }
   // One past the last face along an axis.
   int faceEnd(int axis) const { return periodic[axis] ? n[axis] : n[axis] + 1; }
+  // Place along an axis that one in a periodic image stands for; along an axis with walls the place itself.
+  int wrapped(int axis, int at) const { return periodic[axis] ? ((at % n[axis]) + n[axis]) % n[axis] : at; }
+  // Index of what (i, j, k), perhaps in a periodic image, stands for; -1 outside the tank. faces: the axes along which
+  // it is a face or the end of an edge, of which there is one more than cells.
+  std::ptrdiff_t indexInTank(std::array<int, 3> at, const std::array<bool, 3>& faces = {}) const {
+    for (int a = 0; a < 3; ++a) {
+      at[a] = wrapped(a, at[a]);
+      if (at[a] < 0 || at[a] >= (faces[a] ? faceEnd(a) : n[a])) return -1;
+    }
+    return index(at[0], at[1], at[2]);
+  }
   // Where the plane of cells or faces k begins in a field, halo and all.
   std::ptrdiff_t planeBegin(int k) const { return stride[2] * (k + kLowHalo); }
   bool anyPeriodic() const { return periodic[0] || periodic[1] || periodic[2]; }

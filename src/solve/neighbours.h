@@ -15,8 +15,7 @@ void forEachNeighbour(const Lattice& l, std::ptrdiff_t cell, Function&& f) {
   for (int a = 0; a < 3; ++a) {
     for (const int direction : {-1, 1}) {
       std::array<int, 3> at = here;
-      at[a] += direction;
-      if (l.periodic[a]) at[a] = (at[a] + l.n[a]) % l.n[a];
+      at[a] = l.wrapped(a, at[a] + direction);
       if (at[a] >= 0 && at[a] < l.n[a]) f(l.index(at[0], at[1], at[2]), a, direction);
     }
   }

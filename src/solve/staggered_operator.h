@@ -21,6 +21,13 @@ namespace monolith {
 // The three pairs of axes of the shear samples: edge arrays are indexed by pair.
 constexpr int kShearPairs[3][2] = {{0, 1}, {0, 2}, {1, 2}};
 
+// Index of an edge that may lie in a periodic image; -1 outside the tank.
+inline std::ptrdiff_t edgeIndex(const Lattice& l, int pair, const std::array<int, 3>& at) {
+  std::array<bool, 3> faces = {};
+  for (const int a : kShearPairs[pair]) faces[a] = true;
+  return l.indexInTank(at, faces);
+}
+
 template <class Real>
 using FaceField = std::array<std::vector<Real>, 3>;
 using FaceMask = FaceField<std::uint8_t>;  // 1 or 0
