@@ -46,13 +46,12 @@ bool BodyServices::applyWrench(monolith_tank::ApplyBodyWrench::Request& request,
   return answer("apply_body_wrench", response, [&] {
     const int body = control_.findBody(request.body_name, "body_name");
     control_.requireFree(body, "body_name");
-    const Eigen::Isometry3d X_WF = control_.framePose(request.reference_frame, "reference_frame");
+    control_.framePose(request.reference_frame, "reference_frame");
     WrenchCommand command;
     command.frame = request.reference_frame;
     command.point = fromMessage(request.reference_point, "reference_point");
     command.force = fromMessage(request.wrench.force, "wrench.force");
     command.torque = fromMessage(request.wrench.torque, "wrench.torque");
-    control_.requireFinite(body, command, X_WF);
     if (request.duration.isZero()) {
       throw RequestError("duration: value 0 s: expected > 0, or < 0 for a wrench without end");
     }
@@ -65,6 +64,7 @@ bool BodyServices::applyWrench(monolith_tank::ApplyBodyWrench::Request& request,
     command.start = control_.simulation().time() + std::max(wait, 0.0);
     command.end = request.duration < ros::Duration(0.0) ? std::numeric_limits<double>::infinity()
                                                         : command.start + request.duration.toSec();
+    control_.requireFinite(WrenchCommands::Kind::kApplied, body, command);
     control_.wrenches().apply(body, command);
   });
 }

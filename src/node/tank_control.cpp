@@ -29,25 +29,29 @@ void TankControl::requireFree(int body, const std::string& field) const {
 
 Eigen::Isometry3d TankControl::framePose(const std::string& frame, const std::string& field) const {
   try {
-    return frames_.pose(frame.empty() ? frames_.worldFrame() : frame, simulation_.bodies());
+    return framePoses()(frame);
   } catch (const RequestError& error) {
     throw RequestError(field + ": " + error.what());
   }
 }
 
-void TankControl::requireFinite(int body, const WrenchCommand& command, const Eigen::Isometry3d& X_WF) const {
+void TankControl::requireFinite(WrenchCommands::Kind kind, int body, const WrenchCommand& command) const {
+  const RigidBody& on = simulation_.bodies()[body];
   try {
-    monolith::requireFinite(aboutCentreOfMass(command, X_WF, simulation_.bodies()[body].p_WBcm));
+    wrenches_.requireFinite(kind, body, command, on, framePoses());
   } catch (const RequestError& error) {
-    throw RequestError("wrench: on \"" + simulation_.bodies()[body].name + "\" " + error.what());
+    throw RequestError("wrench: on \"" + on.name + "\" " + error.what());
   }
 }
 
-StepReport TankControl::step(std::vector<std::string>& lost) {
-  const auto frame_pose = [this](const std::string& frame) {
+WrenchCommands::FramePose TankControl::framePoses() const {
+  return [this](const std::string& frame) {
     return frames_.pose(frame.empty() ? frames_.worldFrame() : frame, simulation_.bodies());
   };
-  const std::vector<Wrench> wrenches = wrenches_.evaluate(simulation_.time(), simulation_.bodies(), frame_pose, lost);
+}
+
+StepReport TankControl::step(std::vector<std::string>& lost) {
+  const std::vector<Wrench> wrenches = wrenches_.evaluate(simulation_.time(), simulation_.bodies(), framePoses(), lost);
   for (std::size_t b = 0; b < wrenches.size(); ++b) simulation_.setWrench(static_cast<int>(b), wrenches[b]);
   const StepReport report = simulation_.step();
   if (report.committed()) wrenches_.commit();

@@ -29,8 +29,8 @@ class TankControl {
   // X_WF now. The empty frame is the world.
   Eigen::Isometry3d framePose(const std::string& frame, const std::string& field) const;
 
-  // RequestError unless the wrench, in its frame as it is now, is finite about the body's centre of mass.
-  void requireFinite(int body, const WrenchCommand& command, const Eigen::Isometry3d& X_WF) const;
+  // RequestError unless the wrench, about the body's centre of mass, and its sum with what acts beside it are finite.
+  void requireFinite(WrenchCommands::Kind kind, int body, const WrenchCommand& command) const;
 
   // One output step with the wrenches as they are now. Messages of wrenches given up are appended to `lost`. A step
   // that throws is reported as one that was not committed. Wrenches of a step that was not committed are still to act.
@@ -38,6 +38,8 @@ class TankControl {
   void reset();
 
  private:
+  WrenchCommands::FramePose framePoses() const;
+
   Simulation simulation_;
   ReferenceFrames frames_;
   WrenchCommands wrenches_;

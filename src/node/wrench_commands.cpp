@@ -8,6 +8,21 @@ namespace {
 
 constexpr double kTimeSlack = 1e-6;  // s, round-off of a sum of steps
 
+bool isFinite(const Wrench& wrench) { return wrench.force.allFinite() && wrench.torque.allFinite(); }
+
+std::string shown(const Wrench& wrench) {
+  return "force " + shownVector(wrench.force) + " N and torque " + shownVector(wrench.torque) + " N m";
+}
+
+// RequestError if the wrench or the sum is too large for a number.
+void add(const Wrench& wrench, Wrench& sum) {
+  const std::string text = "about the centre of mass " + shown(wrench);
+  if (!isFinite(wrench)) throw RequestError(text + ": expected finite numbers");
+  const Wrench both{sum.force + wrench.force, sum.torque + wrench.torque};
+  if (!isFinite(both)) throw RequestError(text + ", beside " + shown(sum) + " of others: expected a finite sum");
+  sum = both;
+}
+
 }  // namespace
 
 Wrench aboutCentreOfMass(const WrenchCommand& command, const Eigen::Isometry3d& X_WF, const Eigen::Vector3d& p_WBcm) {
@@ -17,10 +32,14 @@ Wrench aboutCentreOfMass(const WrenchCommand& command, const Eigen::Isometry3d& 
   return wrench;
 }
 
-void requireFinite(const Wrench& wrench) {
-  if (wrench.force.allFinite() && wrench.torque.allFinite()) return;
-  throw RequestError("about the centre of mass force " + shownVector(wrench.force) + " N and torque " +
-                     shownVector(wrench.torque) + " N m: expected finite numbers");
+void WrenchCommands::requireFinite(Kind kind, int body, const WrenchCommand& command, const RigidBody& on,
+                                   const FramePose& frame_pose) const {
+  std::vector<Entry> others = applied_[body];
+  if (kind == Kind::kApplied) others.insert(others.end(), held_[body].begin(), held_[body].end());
+  Wrench sum;
+  std::vector<std::string> lost;
+  evaluate(others, command.start, on, frame_pose, sum, lost);
+  add(aboutCentreOfMass(command, frame_pose(command.frame), on.p_WBcm), sum);
 }
 
 void WrenchCommands::hold(int body, const WrenchCommand& command) { held_[body].assign(1, Entry{command}); }
@@ -63,11 +82,7 @@ void WrenchCommands::evaluate(std::vector<Entry>& entries, double time, const Ri
     if (over) continue;
     if (time >= entry.command.start - kTimeSlack) {
       try {
-        Wrench wrench = aboutCentreOfMass(entry.command, frame_pose(entry.command.frame), body.p_WBcm);
-        wrench.force += sum.force;
-        wrench.torque += sum.torque;
-        requireFinite(wrench);
-        sum = wrench;
+        add(aboutCentreOfMass(entry.command, frame_pose(entry.command.frame), body.p_WBcm), sum);
         entry.acts = true;
       } catch (const RequestError& error) {
         lost.push_back("wrench on \"" + body.name + "\" given up: " + error.what());

@@ -26,22 +26,24 @@ struct WrenchCommand {
 
 Wrench aboutCentreOfMass(const WrenchCommand& command, const Eigen::Isometry3d& X_WF, const Eigen::Vector3d& p_WBcm);
 
-// RequestError with the wrench about the centre of mass if it is too large for a number.
-void requireFinite(const Wrench& wrench);
-
 class WrenchCommands {
  public:
+  // X_WF of a frame; throws RequestError.
+  using FramePose = std::function<Eigen::Isometry3d(const std::string& frame)>;
+
   explicit WrenchCommands(int bodies) : held_(bodies), applied_(bodies) {}
 
+  enum class Kind { kHeld, kApplied };
+  // RequestError if the command would be given up when it begins, in frames as they are now: alone, or with what acts
+  // beside it then.
+  void requireFinite(Kind kind, int body, const WrenchCommand& command, const RigidBody& on,
+                     const FramePose& frame_pose) const;
   // In place of what is held for the body.
   void hold(int body, const WrenchCommand& command);
   // Beside what acts on the body already.
   void apply(int body, const WrenchCommand& command);
   void clear(int body);
   void clear();
-
-  // X_WF of a frame; throws RequestError.
-  using FramePose = std::function<Eigen::Isometry3d(const std::string& frame)>;
 
   // The sum for each body in the step that begins at `time`, always finite. Commands that are over are forgotten. So
   // are those whose frame is no longer known, or that with those before them are too large for a number: a line for

@@ -33,10 +33,11 @@ void WrenchInput::receive(const geometry_msgs::WrenchStamped& message, int body,
     command.frame = message.header.frame_id;
     command.force = fromMessage(message.wrench.force, "wrench.force");
     command.torque = fromMessage(message.wrench.torque, "wrench.torque");
-    // Refused now rather than in the step.
-    control_.requireFinite(body, command, control_.framePose(command.frame, "header.frame_id"));
     command.start = control_.simulation().time();
     command.end = command.start + timeout_sec_;
+    // Refused now rather than in the step.
+    control_.framePose(command.frame, "header.frame_id");
+    control_.requireFinite(WrenchCommands::Kind::kHeld, body, command);
     control_.wrenches().hold(body, command);
   } catch (const RequestError& error) {
     refuse_(topic + ": " + error.what());

@@ -32,6 +32,18 @@ class TankControlTest : public ::testing::Test {
     return command;
   }
 
+  using Kind = WrenchCommands::Kind;
+
+  // Why a wrench is refused; "" if it isn't.
+  std::string refusal(Kind kind, const WrenchCommand& command) const {
+    try {
+      control_.requireFinite(kind, 0, command);
+    } catch (const RequestError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
   tf2::BufferCore transforms_;
   TankControl control_{scene(), "world", transforms_};
   std::vector<std::string> lost_;
@@ -53,17 +65,37 @@ TEST_F(TankControlTest, AShortWrenchIsNotLostWithAStepThatFails) {
 
 TEST_F(TankControlTest, AWrenchThatIsTooLargeAboutTheCentreOfMassIsRefused) {
   WrenchCommand command = push(1e308, 1.0);
-  EXPECT_NO_THROW(control_.requireFinite(0, command, Eigen::Isometry3d::Identity()));
+  EXPECT_EQ(refusal(Kind::kApplied, command), "");
   command.point.y() = 1e308;
-  try {
-    control_.requireFinite(0, command, Eigen::Isometry3d::Identity());
-    FAIL();
-  } catch (const RequestError& error) {
-    const std::string text = error.what();
+  for (const Kind kind : {Kind::kApplied, Kind::kHeld}) {
+    const std::string text = refusal(kind, command);
     for (const char* part : {"wrench: ", "\"ball\"", "torque [", "-inf", "expected finite"}) {
       EXPECT_NE(text.find(part), std::string::npos) << part << " in: " << text;
     }
   }
+}
+
+TEST_F(TankControlTest, WrenchesWhoseSumIsTooLargeAreRefused) {
+  const WrenchCommand command = push(1e308, 1.0);
+  control_.wrenches().hold(0, command);
+  const std::string text = refusal(Kind::kApplied, command);
+  for (const char* part : {"wrench: ", "\"ball\"", "force [1e+308, 0, 0] N", "expected a finite sum"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << part << " in: " << text;
+  }
+  // Nothing acts beside what is held instead, or against it.
+  EXPECT_EQ(refusal(Kind::kHeld, command), "");
+  EXPECT_EQ(refusal(Kind::kApplied, push(-1e308, 1.0)), "");
+  control_.wrenches().clear();
+  control_.wrenches().apply(0, command);
+  EXPECT_NE(refusal(Kind::kApplied, command), "");
+  EXPECT_NE(refusal(Kind::kHeld, command), "");
+  // What acts later does so only if it can then.
+  WrenchCommand later = command;
+  later.start = 1.0;
+  control_.wrenches().clear();
+  control_.wrenches().apply(0, later);
+  EXPECT_EQ(refusal(Kind::kApplied, command), "");
+  EXPECT_NE(refusal(Kind::kApplied, later), "");
 }
 
 }  // namespace
