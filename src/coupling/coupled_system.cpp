@@ -25,12 +25,8 @@ std::unique_ptr<StepSolver> makeSolver(SolverName name) {
 }  // namespace
 
 struct CoupledSystem::Impl {
-  Impl(const MacGrid& grid, SolverName name, CouplingName coupling_name, Discretisation discretisation,
-       double sticking_viscosity)
-      : problem(grid, discretisation, sticking_viscosity),
-        solver_name(name),
-        solver(makeSolver(name)),
-        coupling(coupling_name) {}
+  Impl(const MacGrid& grid, SolverName name, CouplingName coupling_name, Discretisation discretisation)
+      : problem(grid, discretisation), solver_name(name), solver(makeSolver(name)), coupling(coupling_name) {}
 
   StepProblem problem;
   SolverName solver_name;
@@ -86,8 +82,8 @@ struct CoupledSystem::Impl {
 };
 
 CoupledSystem::CoupledSystem(const MacGrid& grid, SolverName solver, CouplingName coupling,
-                             Discretisation discretisation, double sticking_viscosity)
-    : impl_(std::make_unique<Impl>(grid, solver, coupling, discretisation, sticking_viscosity)) {}
+                             Discretisation discretisation)
+    : impl_(std::make_unique<Impl>(grid, solver, coupling, discretisation)) {}
 CoupledSystem::~CoupledSystem() = default;
 
 void CoupledSystem::setStickingViscosity(double viscosity) { impl_->problem.sticking_viscosity = viscosity; }

@@ -23,12 +23,11 @@ struct CoupledState {
 
 class CoupledSystem {
  public:
-  // sticking_viscosity: stickingViscosity() of the liquid (sticking_liquid.h).
-  CoupledSystem(const MacGrid& grid, SolverName solver, CouplingName coupling, Discretisation discretisation,
-                double sticking_viscosity);
+  CoupledSystem(const MacGrid& grid, SolverName solver, CouplingName coupling, Discretisation discretisation);
   ~CoupledSystem();
 
-  // From the next assembly on.
+  // stickingViscosity() of the liquid (sticking_liquid.h), from the next assembly on; at first all that is viscous
+  // sticks.
   void setStickingViscosity(double viscosity);
 
   // What the solver has learnt from the steps so far does not count from now on; assemble() has to follow.

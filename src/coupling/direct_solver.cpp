@@ -99,24 +99,11 @@ CoupledReport DirectSolver::Impl::solve(const StepVector& rhs, double tolerance,
   }
   backSubstitute(rhs, x);
   report.solves = 1;
-  const double scale = stepNorm(*problem, rhs);
-  StepVector free_part, residual, correction;
+  StepVector residual, correction;
   correction.resize(problem->grid.lattice, problem->bodies->size());
   for (int it = 0;; ++it) {
-    free_part = x;
-    for (std::size_t b = 0; b < problem->bodies->size(); ++b) {
-      if (problem->free_index[b] < 0) free_part.bodies[b].setZero();
-    }
-    problem->apply(free_part, residual);
-    for (int a = 0; a < 3; ++a) {
-      for (std::size_t i = 0; i < residual.velocity[a].size(); ++i) {
-        residual.velocity[a][i] = rhs.velocity[a][i] - residual.velocity[a][i];
-      }
-    }
-    for (std::size_t i = 0; i < residual.pressure.size(); ++i) residual.pressure[i] = rhs.pressure[i] - residual.pressure[i];
-    for (std::size_t b = 0; b < residual.bodies.size(); ++b) residual.bodies[b] = rhs.bodies[b] - residual.bodies[b];
-    // A right side that is no number has no solution.
-    report.residual = scale == 0.0 ? 0.0 : stepNorm(*problem, residual) / scale;
+    stepResidual(*problem, rhs, x, residual);
+    report.residual = relativeNorm(*problem, residual, rhs);
     if (report.residual <= tolerance) break;
     if (it == kRefinements) {
       std::ostringstream text;

@@ -1,7 +1,6 @@
 #include "coupling/reference_solver.h"
 
 #include <Eigen/IterativeLinearSolvers>
-#include <cmath>
 #include <functional>
 #include <sstream>
 
@@ -73,19 +72,10 @@ struct ReferenceSolver::Impl {
 
 double ReferenceSolver::Impl::residual(const StepVector& rhs, const Eigen::VectorXd& contact_forces,
                                        const StepVector& x) const {
-  StepVector from = x, r;
-  for (std::size_t b = 0; b < problem->bodies->size(); ++b) {
-    if (problem->free_index[b] < 0) from.bodies[b].setZero();
-  }
-  problem->apply(from, r);
-  for (int a = 0; a < 3; ++a) {
-    for (std::size_t i = 0; i < r.velocity[a].size(); ++i) r.velocity[a][i] -= rhs.velocity[a][i];
-  }
-  for (std::size_t i = 0; i < r.pressure.size(); ++i) r.pressure[i] -= rhs.pressure[i];
-  scatterBodies(*problem, gatherBodies(*problem, r.bodies) - gatherBodies(*problem, rhs.bodies) - contact_forces,
-                r.bodies);
-  const double scale = stepNorm(*problem, rhs);
-  return scale == 0.0 ? 0.0 : stepNorm(*problem, r) / scale;
+  StepVector r;
+  stepResidual(*problem, rhs, x, r);
+  scatterBodies(*problem, gatherBodies(*problem, r.bodies) + contact_forces, r.bodies);
+  return relativeNorm(*problem, r, rhs);
 }
 
 CoupledReport ReferenceSolver::Impl::minimise(const StepVector& rhs, const Eigen::VectorXd& body_forces,

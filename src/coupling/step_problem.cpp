@@ -7,6 +7,7 @@
 
 #include "coupling/fraction_coefficients.h"
 #include "coupling/row_kinds.h"
+#include "coupling/sticking_liquid.h"
 #include "solve/blocked_sum.h"
 #include "solve/velocity_multigrid.h"
 #include "solve/whole_fields.h"

@@ -25,7 +25,6 @@
 #include "coupling/pressure_regions.h"
 #include "coupling/solid_fractions.h"
 #include "coupling/step_operator.h"
-#include "coupling/sticking_liquid.h"
 #include "coupling/stokes_coefficients.h"
 #include "rigid/integration.h"
 
@@ -33,10 +32,8 @@ namespace monolith {
 
 class StepProblem {
  public:
-  // sticking_viscosity: stickingViscosity(), of `fitted`.
-  explicit StepProblem(const MacGrid& grid, Discretisation discretisation = Discretisation::kFitted,
-                       double sticking_viscosity = 0.0)
-      : grid(grid), discretisation(discretisation), sticking_viscosity(sticking_viscosity) {}
+  explicit StepProblem(const MacGrid& grid, Discretisation discretisation = Discretisation::kFitted)
+      : grid(grid), discretisation(discretisation) {}
 
   // Geometry and material; liquid_distance in cell widths with its halo filled. Bodies must outlive the problem; in
   // `solids` the liquid that sticks to the bodies is moved to them. With `rates`, `strain` is filled, too.
@@ -79,7 +76,7 @@ class StepProblem {
 
   MacGrid grid;
   Discretisation discretisation;
-  double sticking_viscosity;  // Pa.s
+  double sticking_viscosity = 0.0;  // Pa.s, stickingViscosity(), of `fitted`
   StaggeredCoefficients<double> coefficients;
   BodyRows rows;
   FaceField<double> flux_share;  // U = flux_share u, 0 without an unknown; empty: U = u

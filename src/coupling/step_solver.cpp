@@ -55,4 +55,23 @@ double bodiesNorm(const StepProblem& problem, const Eigen::VectorXd& free) {
   return std::sqrt(sum);
 }
 
+void stepResidual(const StepProblem& problem, const StepVector& rhs, const StepVector& x, StepVector& residual) {
+  StepVector unknown = x;
+  for (std::size_t b = 0; b < problem.bodies->size(); ++b) {
+    if (problem.free_index[b] < 0) unknown.bodies[b].setZero();
+  }
+  problem.apply(unknown, residual);
+  const auto subtract = [](const auto& from, auto& field) {
+    for (std::size_t i = 0; i < field.size(); ++i) field[i] = from[i] - field[i];
+  };
+  for (int a = 0; a < 3; ++a) subtract(rhs.velocity[a], residual.velocity[a]);
+  subtract(rhs.pressure, residual.pressure);
+  subtract(rhs.bodies, residual.bodies);
+}
+
+double relativeNorm(const StepProblem& problem, const StepVector& residual, const StepVector& rhs) {
+  const double scale = stepNorm(problem, rhs);
+  return scale == 0.0 ? 0.0 : stepNorm(problem, residual) / scale;
+}
+
 }  // namespace monolith

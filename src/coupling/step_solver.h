@@ -6,6 +6,7 @@
 #include <string>
 
 #include "coupling/contact_rows.h"
+#include "coupling/solve_status.h"
 #include "coupling/step_problem.h"
 
 namespace monolith {
@@ -17,7 +18,7 @@ struct CoupledOptions {
 };
 
 struct CoupledReport {
-  enum class Status { kNotRun, kConverged, kNotConverged, kInconsistent };
+  using Status = SolveStatus;
   Status status = Status::kNotRun;
   std::string message;
   int iterations = 0;             // of the linear solver; `direct`: none
@@ -61,5 +62,9 @@ void scatterBodies(const StepProblem& problem, const Eigen::VectorXd& free, std:
 double stepNorm(const StepProblem& problem, const StepVector& r);
 // The bodies' part of it, of impulses on the free ones.
 double bodiesNorm(const StepProblem& problem, const Eigen::VectorXd& free);
+// residual = rhs - operator * x.
+void stepResidual(const StepProblem& problem, const StepVector& rhs, const StepVector& x, StepVector& residual);
+// Its norm relative to that of the right side: 0 of one that is zero, not a number of one that is none.
+double relativeNorm(const StepProblem& problem, const StepVector& residual, const StepVector& rhs);
 
 }  // namespace monolith

@@ -103,6 +103,8 @@ constexpr double kMostSecondOrderCells = 0.75;
 
 constexpr int kMostThreads = 1024;  // more than there are; a count that cannot be had ends the process
 
+constexpr double kLeastTolerance = 1e-12;  // of a solve: round-off
+
 struct SolverDescription {
   SolverName name = SolverName::kFast;
   CouplingName coupling = CouplingName::kUnified;

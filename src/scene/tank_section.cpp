@@ -16,7 +16,6 @@ constexpr int kLeastCells = 4;           // along an axis
 constexpr double kFarthestCells = 1e9;   // of the origin: beyond, a cell is lost in the round-off of positions
 constexpr double kDensest = 1e9;         // kg/m^3
 constexpr double kMostViscous = 1e15;    // Pa.s
-constexpr double kLeastTolerance = 1e-12;
 constexpr double kBytesPerCell = 1700.0;  // at the peak of a step, viscous, one body: ./tank bench
 
 char axisName(int axis) { return "xyz"[axis]; }

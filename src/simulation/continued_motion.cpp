@@ -129,7 +129,8 @@ void continueIntoAir(const Lattice& l, const SolidFractions& solids, const std::
       if (turns.count + rows.count == 0) return;
       for (const LiquidField& field : fields) {
         FaceField<double>& u = *field.values;
-        u[a][f] = turns.count > 0 ? meanOverTurns(l, u, a, turns, field.steepest) : meanOverRows(u[a], rows, field.steepest);
+        u[a][f] =
+            turns.count > 0 ? meanOverTurns(l, u, a, turns, field.steepest) : meanOverRows(u[a], rows, field.steepest);
       }
       known[a][f] = 1;
     });
@@ -168,7 +169,7 @@ void limitSlivers(const SolidFractions& solids, const MacGrid& grid, FaceField<d
 }
 
 void completeMotion(const SolidFractions& solids, const MacGrid& grid, const std::vector<RigidBody>& bodies, int layers,
-                    bool no_slip, const std::vector<LiquidField>& fields, FaceMask& known) {
+                    bool no_slip, const std::vector<LiquidField>& fields, FaceMask& known, FaceMask& work) {
   const Lattice& l = grid.lattice;
   const int width = l.faceEnd(0);
   for (int a = 0; a < 3; ++a) {
@@ -194,8 +195,7 @@ void completeMotion(const SolidFractions& solids, const MacGrid& grid, const std
       }
     });
   }
-  FaceMask before;
-  for (int layer = 0; layer < kLayers; ++layer) continueIntoAir(l, solids, fields, before, known);
+  for (int layer = 0; layer < kLayers; ++layer) continueIntoAir(l, solids, fields, work, known);
   std::vector<FaceField<double>*> values;
   for (const LiquidField& field : fields) values.push_back(field.values);
   extrapolateVelocity(l, layers, no_slip, known, values);

@@ -31,8 +31,8 @@ struct LiquidField {
 void limitSlivers(const SolidFractions& solids, const MacGrid& grid, FaceField<double>& velocity, FaceMask& known);
 
 // Gives faces inside bodies the bodies' motion where the liquid sticks to them, and spreads what is known into solids
-// and air, marking it known.
+// and air, marking it known. work: a mask that may be written to.
 void completeMotion(const SolidFractions& solids, const MacGrid& grid, const std::vector<RigidBody>& bodies, int layers,
-                    bool no_slip, const std::vector<LiquidField>& fields, FaceMask& known);
+                    bool no_slip, const std::vector<LiquidField>& fields, FaceMask& known, FaceMask& work);
 
 }  // namespace monolith

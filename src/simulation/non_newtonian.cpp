@@ -13,7 +13,7 @@ constexpr int kDepth = 10;              // iterates that the acceleration looks 
 constexpr double kFirstForcing = 1e-2;  // relative residual of the first linear solve
 constexpr double kForcing = 0.02;       // ... of the others, relative to what the viscosity left before
 // Round-off of a solve in which viscosities differ by orders of magnitude: no residual below it is asked for.
-constexpr double kLeastTolerance = 1e-9;
+constexpr double kLeastGoal = 1e-9;
 constexpr double kGrowth = 1.5;  // of the residual over its least so far: the acceleration has gone astray
 
 // Extrapolation knows no limits; the law does.
@@ -56,7 +56,7 @@ CoupledReport solveNonNewtonian(CoupledSystem& system, const ViscosityLaw& law, 
   // What damping by the steepest slope does not cure is left to the acceleration.
   Anderson anderson(kDepth, 1.0 / law.steepest());
   CoupledOptions inner = options;
-  const double linear_goal = std::max(0.5 * options.tolerance, kLeastTolerance);
+  const double linear_goal = std::max(0.5 * options.tolerance, kLeastGoal);
   inner.tolerance = std::max(linear_goal, kFirstForcing);
   CoupledReport total;
   double least = 0.0;

@@ -60,7 +60,7 @@ struct Simulation::Impl {
         grid(makeGrid(s.tank, s.liquid)),
         walls(makeWalls(s.tank)),
         sampler(grid),
-        system(grid, s.solver.name, s.solver.coupling, s.solver.discretisation, 0.0),
+        system(grid, s.solver.name, s.solver.coupling, s.solver.discretisation),
         laws(s),
         viscosity_law(makeViscosityLaw(s.liquid)) {}
 

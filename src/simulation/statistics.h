@@ -3,13 +3,10 @@
 
 #include <Eigen/Dense>
 #include <string>
-#include <vector>
+
+#include "coupling/solve_status.h"
 
 namespace monolith {
-
-enum class SolveStatus { kNotRun, kConverged, kNotConverged, kInconsistent };
-
-const char* toString(SolveStatus status);
 
 struct StageTimes {  // s of wall time, summed over the sub-steps
   double advection = 0.0;

@@ -13,7 +13,6 @@ namespace {
 
 // The first solve starts from nothing that it could correct later.
 constexpr double kFirstTolerance = 1e-4;
-constexpr double kLeastTolerance = 1e-12;   // of a first solve: round-off
 constexpr double kClosingTolerance = 1e-3;  // of a cell: a gap that closes by less within a step is no impact
 // Per cell, with which the liquid's motion goes on into the air where only its own slope tells how: of sqrt(gravity h),
 // the speed of the shortest waves, and of gravity. A wave of 32 cells length and an amplitude of a third of a cell has
@@ -197,7 +196,7 @@ void Simulation::Impl::moveLiquid(const StepWeights& w, StepReport& step) {
   const double reach = std::ceil(std::max(step.maximum_speed, bodySpeed()) * w.dt / grid.h);
   const int layers = static_cast<int>(std::min(reach, static_cast<double>(most))) + 3;
   const auto complete = [&](const std::vector<LiquidField>& fields, FaceMask& known) {
-    completeMotion(solids, grid, plan.bodies, layers, noSlip(), fields, known);
+    completeMotion(solids, grid, plan.bodies, layers, noSlip(), fields, known, scratch.known_before);
   };
   const double gravity = scene.gravity.norm();
   const LiquidField velocity{&state.coupled.velocity, &state.coupled.twists,
@@ -264,8 +263,7 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
   step.contact_residual = std::max(step.contact_residual, solved.contact_residual);
   step.divergence = std::max(step.divergence, solved.divergence);
   if (solved.status != CoupledReport::Status::kConverged) {
-    step.status =
-        solved.status == CoupledReport::Status::kInconsistent ? SolveStatus::kInconsistent : SolveStatus::kNotConverged;
+    step.status = solved.status;
     step.message = solved.message;
     return false;
   }

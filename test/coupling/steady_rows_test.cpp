@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <random>
 
 #include "coupling/permeability.h"
@@ -31,8 +30,9 @@ struct Moment {
 
 // All that is built for a step, by one object after the other or by the same one.
 struct Built {
-  explicit Built(const MacGrid& grid, double sticking_viscosity)
-      : problem(grid, Discretisation::kFitted, sticking_viscosity) {}
+  explicit Built(const MacGrid& grid, double sticking_viscosity) : problem(grid) {
+    problem.sticking_viscosity = sticking_viscosity;
+  }
 
   void make(const Moment& at, bool keep) {
     const MacGrid& grid = problem.grid;

@@ -61,7 +61,8 @@ double errorAbove(const std::function<Vector3d(const Vector3d&)>& flow, double t
     });
   }
   const LiquidField field{&velocity, nullptr, kAnySlope};
-  completeMotion(solids, g, {}, kReach + 1, false, {field}, known);
+  FaceMask work;
+  completeMotion(solids, g, {}, kReach + 1, false, {field}, known, work);
   double error = 0.0, largest = 0.0;
   int looked_at = 0;
   forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {

@@ -54,8 +54,8 @@ struct FirstStep {
       : scene(s),
         grid(makeGrid(s.tank, s.liquid)),
         surface(grid, s.liquid.fill_level, s.liquid.boxes),
-        system(grid, s.solver.name, s.solver.coupling, s.solver.discretisation,
-               stickingViscosity(s.liquid.density, std::sqrt(s.gravity.norm() * grid.h), grid.h)) {
+        system(grid, s.solver.name, s.solver.coupling, s.solver.discretisation) {
+    system.setStickingViscosity(stickingViscosity(s.liquid.density, std::sqrt(s.gravity.norm() * grid.h), grid.h));
     for (const BodyDescription& body : s.bodies) bodies.push_back(makeRigidBody(body, 0.5 * grid.h));
     SolidSampler(grid).sample(bodies, sampled);
     surface.extendIntoSolids(sampled.cell_distance, sampled.distance);
