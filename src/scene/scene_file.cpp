@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scene/resource_path.h"
+#include "scene/scene_memory.h"
 #include "scene/scene_sections.h"
 #include "scene/yaml_map.h"
 
@@ -64,7 +65,8 @@ void readBodies(const YamlMap& map, const std::string& folder, const SceneResolv
 Scene loadScene(const std::string& yaml_file, const SceneResolver& resolver) {
   const YAML::Node root = parseYaml(yaml_file);
   Violations violations(yaml_file);
-  const YamlMap map(root, "", {"tank", "name", "liquid", "gravity", "time_step", "contact", "solver", "bodies"}, violations);
+  const YamlMap map(root, "", {"tank", "name", "liquid", "gravity", "time_step", "contact", "solver", "bodies"},
+                    violations);
   Scene scene;
   scene.source = yaml_file;
   scene.name = fs::path(yaml_file).stem().string();
@@ -77,10 +79,10 @@ Scene loadScene(const std::string& yaml_file, const SceneResolver& resolver) {
   if (root.IsMap()) map.require("tank", "a map with size and cell_width");
   if (map.has("tank")) tank_usable = readTank(map.get("tank"), scene.tank, violations);
   if (map.has("liquid")) readLiquid(map.get("liquid"), scene.tank, tank_usable, scene.liquid, violations);
+  if (map.has("solver")) readSolver(map.get("solver"), scene.solver, violations);
   // A dry tank has no cells.
   const bool dry = !scene.liquid.any();
-  if (tank_usable && !dry) checkMemory(map.get("tank"), scene.tank, violations);
-  if (map.has("solver")) readSolver(map.get("solver"), scene.solver, violations);
+  if (tank_usable && !dry) checkMemory(map.get("tank"), scene, usableMemory(), violations);
   const std::string folder = fs::absolute(yaml_file).parent_path().string();
   readBodies(map, folder, resolver, tank_usable, scene, violations);
   if (map.has("contact")) readContact(map.get("contact"), scene.bodies, scene.contact, violations);

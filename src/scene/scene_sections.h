@@ -11,8 +11,8 @@ namespace monolith {
 // Returns whether the tank is usable, so that what depends on it can be checked.
 bool readTank(const YAML::Node& node, TankDescription& tank, Violations& violations);
 
-// That of all cells has to be there.
-void checkMemory(const YAML::Node& node, const TankDescription& tank, Violations& violations);
+// node: the tank's. usable: bytes.
+void checkMemory(const YAML::Node& node, const Scene& scene, double usable, Violations& violations);
 
 void readLiquid(const YAML::Node& node, const TankDescription& tank, bool tank_usable, LiquidDescription& liquid,
                 Violations& violations);

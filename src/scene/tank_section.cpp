@@ -1,8 +1,7 @@
-#include <unistd.h>
-
 #include <cmath>
 #include <sstream>
 
+#include "scene/scene_memory.h"
 #include "scene/scene_sections.h"
 #include "scene/shown_vector.h"
 
@@ -16,7 +15,6 @@ constexpr int kLeastCells = 4;           // along an axis
 constexpr double kFarthestCells = 1e9;   // of the origin: beyond, a cell is lost in the round-off of positions
 constexpr double kDensest = 1e9;         // kg/m^3
 constexpr double kMostViscous = 1e15;    // Pa.s
-constexpr double kBytesPerCell = 1700.0;  // at the peak of a step, viscous, one body: ./tank bench
 
 char axisName(int axis) { return "xyz"[axis]; }
 
@@ -74,15 +72,15 @@ bool readTank(const YAML::Node& node, TankDescription& tank, Violations& violati
   return violations.count() == violations_before;
 }
 
-void checkMemory(const YAML::Node& node, const TankDescription& tank, Violations& violations) {
-  const double cells = (tank.size / tank.cell_width).array().round().prod();
+void checkMemory(const YAML::Node& node, const Scene& scene, double usable, Violations& violations) {
   const double gigabyte = 1e9;
-  const double needed = cells * kBytesPerCell / gigabyte;
-  const double present = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGE_SIZE) / gigabyte;
-  if (needed <= present) return;
+  const double needed = neededMemory(scene);
+  if (!(needed > usable)) return;
   std::ostringstream text;
-  text << "tank.cell_width: value " << shownValue(node["cell_width"]) << ": expected a tank that fits in memory: "
-       << cells << " cells need about " << needed << " GB, this machine has " << present << " GB";
+  text << "tank.cell_width: value " << shownValue(node["cell_width"])
+       << ": expected a tank that fits in memory: " << (scene.tank.size / scene.tank.cell_width).array().round().prod()
+       << " cells need about " << needed / gigabyte << " GB by this solver, of which " << usable / gigabyte
+       << " GB may be used here";
   violations.add(node["cell_width"], text.str());
 }
 
@@ -141,10 +139,10 @@ void readLiquid(const YAML::Node& node, const TankDescription& tank, bool tank_u
 }
 
 void readSolver(const YAML::Node& node, SolverDescription& solver, Violations& violations) {
-  const YamlMap map(node, "solver",
-                    {"name", "coupling", "discretisation", "time_stepping", "tolerance", "maximum_iterations", "threads",
-                     "cfl"},
-                    violations);
+  const YamlMap map(
+      node, "solver",
+      {"name", "coupling", "discretisation", "time_stepping", "tolerance", "maximum_iterations", "threads", "cfl"},
+      violations);
   const std::string name = map.readWord("name", "fast", {"fast", "direct", "reference"});
   solver.name = name == "direct"      ? SolverName::kDirect
                 : name == "reference" ? SolverName::kReference
