@@ -124,18 +124,10 @@ bool SolidSampler::serves(const BodySample& sample, const RigidBody& body) const
   return sample.shape == body.distance.get() && !(body.distanceFrom(sample.pose) > kHardlyMoved * grid_.h);
 }
 
-void SolidSampler::sampleBody(const RigidBody& body, BodySample& out) const {
+bool SolidSampler::placeBox(const Eigen::AlignedBox3d& box, BodyFractions& f) const {
   const Lattice& l = grid_.lattice;
   const double h = grid_.h;
-  const Eigen::Isometry3d X_WB = body.pose();
-  const Eigen::Isometry3d X_BW = X_WB.inverse();
-  const Eigen::Matrix3d R_WB = X_WB.linear();
-  const Eigen::AlignedBox3d box = body.distance->bounds().transformed(X_WB);
-
-  out.shape = body.distance.get();
-  out.pose = X_WB;
-  BodyFractions& f = out.fractions;
-  bool whole = true;  // in the box
+  bool whole = true;
   for (int a = 0; a < 3; ++a) {
     const double low = (box.min()[a] - grid_.origin[a]) / h;
     const double high = (box.max()[a] - grid_.origin[a]) / h;
@@ -156,6 +148,17 @@ void SolidSampler::sampleBody(const RigidBody& body, BodySample& out) const {
     f.low[a] = first;
     f.count[a] = std::max(0, last - first + 1);
   }
+  return whole;
+}
+
+void SolidSampler::sampleBody(const RigidBody& body, BodySample& out) const {
+  const Eigen::Isometry3d X_WB = body.pose();
+  const Eigen::Isometry3d X_BW = X_WB.inverse();
+  const Eigen::Matrix3d R_WB = X_WB.linear();
+  out.shape = body.distance.get();
+  out.pose = X_WB;
+  BodyFractions& f = out.fractions;
+  const bool whole = placeBox(body.distance->bounds().transformed(X_WB), f);
   const std::size_t size = static_cast<std::size_t>(f.count[0]) * f.count[1] * f.count[2];
   for (auto& field : f.face) field.assign(size, 0.0);
   f.cell.assign(size, 0.0);
@@ -163,10 +166,20 @@ void SolidSampler::sampleBody(const RigidBody& body, BodySample& out) const {
   out.cell_distance.resize(size);
   if (size == 0) return;
 
+  std::vector<CellHalves> halves(size);
+  sampleCells(*body.distance, X_BW, R_WB, out, halves);
+  joinHalves(halves, f);
+  if (whole && body.displacement) {
+    fitMoments(grid_, {body.displacement->volume, X_WB * body.displacement->centre}, f);
+  }
+}
+
+void SolidSampler::sampleCells(const SignedDistance& shape, const Eigen::Isometry3d& X_BW, const Eigen::Matrix3d& R_WB,
+                               BodySample& out, std::vector<CellHalves>& halves) const {
+  const double h = grid_.h;
+  BodyFractions& f = out.fractions;
   FaceField<float>& distance = out.distance;
   std::vector<float>& cell_distance = out.cell_distance;
-  std::vector<std::array<float, 6>> halves(size);  // solid part of the low and high half along each axis
-
 #pragma omp parallel for schedule(dynamic)
   for (int k = 0; k < f.count[2]; ++k) {
     for (int j = 0; j < f.count[1]; ++j) {
@@ -174,7 +187,7 @@ void SolidSampler::sampleBody(const RigidBody& body, BodySample& out) const {
         const std::size_t c = f.local(i, j, k);
         const Eigen::Vector3d x_W = grid_.cellCenter(f.low[0] + i, f.low[1] + j, f.low[2] + k);
         const Eigen::Vector3d x_B = X_BW * x_W;
-        const double d = body.distance->distance(x_B) / h;
+        const double d = shape.distance(x_B) / h;
         cell_distance[c] = static_cast<float>(d);
         // Beyond 1.5 cells no face of the cell is next to the surface: sign and rough size are enough.
         if (std::abs(d) > 1.5) {
@@ -187,14 +200,14 @@ void SolidSampler::sampleBody(const RigidBody& body, BodySample& out) const {
         for (int a = 0; a < 3; ++a) {
           Eigen::Vector3d shift = Eigen::Vector3d::Zero();
           shift[a] = -0.5 * h;
-          const double at_face = body.distance->distance(X_BW * (x_W + shift)) / h;
+          const double at_face = shape.distance(X_BW * (x_W + shift)) / h;
           distance[a][c] = std::abs(at_face) < kOnSurface ? 0.0F : static_cast<float>(at_face);
         }
         std::array<double, 8> octants;
         if (std::abs(d) > kUncut) {
           octants.fill(d < 0.0 ? 1.0 : 0.0);
         } else {
-          octantFractions(*body.distance, x_B, R_WB, h, octants);
+          octantFractions(shape, x_B, R_WB, h, octants);
         }
         double cell = 0.0;
         std::array<double, 6> half{};
@@ -207,7 +220,9 @@ void SolidSampler::sampleBody(const RigidBody& body, BodySample& out) const {
       }
     }
   }
+}
 
+void SolidSampler::joinHalves(const std::vector<CellHalves>& halves, BodyFractions& f) {
 #pragma omp parallel for schedule(dynamic)
   for (int k = 0; k < f.count[2]; ++k) {
     for (int j = 0; j < f.count[1]; ++j) {
@@ -227,9 +242,6 @@ void SolidSampler::sampleBody(const RigidBody& body, BodySample& out) const {
         }
       }
     }
-  }
-  if (whole && body.displacement) {
-    fitMoments(grid_, {body.displacement->volume, X_WB * body.displacement->centre}, f);
   }
 }
 

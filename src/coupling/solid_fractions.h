@@ -83,8 +83,17 @@ class SolidSampler {
     std::vector<float> cell_distance;  // at cell centres
   };
 
+  // Solid part of the low and high half of a cell along each axis.
+  using CellHalves = std::array<float, 6>;
+
   bool serves(const BodySample& sample, const RigidBody& body) const;
   void sampleBody(const RigidBody& body, BodySample& out) const;
+  // Cells around a box in W, in which there is the body; returns whether all of it is.
+  bool placeBox(const Eigen::AlignedBox3d& box, BodyFractions& out) const;
+  void sampleCells(const SignedDistance& shape, const Eigen::Isometry3d& X_BW, const Eigen::Matrix3d& R_WB,
+                   BodySample& out, std::vector<CellHalves>& halves) const;
+  // A face's control volume is made of the halves on both sides.
+  static void joinHalves(const std::vector<CellHalves>& halves, BodyFractions& out);
   void addBody(const BodySample& sample, int index, SolidFractions& out) const;
   void close(SolidFractions& out) const;
 

@@ -1,6 +1,5 @@
 #include "coupling/variable_viscosity.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "coupling/step_solver.h"
@@ -90,20 +89,28 @@ bool VariableViscosity::counts(std::ptrdiff_t cell) const {
 
 void VariableViscosity::evaluate(const StepProblem& problem, const ViscosityLaw& law, StepVector& x,
                                  ViscosityField& out) const {
-  const StaggeredCoefficients<double>& c = problem.coefficients;
   const Lattice& l = problem.grid.lattice;
-  const auto size = static_cast<std::ptrdiff_t>(l.size);
-  const double per_h = 1.0 / problem.grid.h;
   out.log_ratio.assign(7 * l.size, 0.0);
   out.weight.assign(7 * l.size, 0.0);
   for (auto& field : x.velocity) fillHalo(l, field);
   StressSamples<double> stress;
-  computeStress(c, problem.rows, x, stress);
+  computeStress(problem.coefficients, problem.rows, x, stress);
+  Edges edges;
+  measureEdges(problem.grid, stress.shear, edges, out);
+  evaluateCells(problem, law, stress.normal, edges, out);
+  out.mean_log = meanOfCells(l, out.log_ratio);
+  evaluateEdges(l, law, edges, out);
+  evaluateFilms(problem, law, x, out);
+}
 
-  // Rates, 1/s; squared for the edges.
-  FaceField<double> edge;
+void VariableViscosity::measureEdges(const MacGrid& grid, const FaceField<double>& stress, Edges& edges,
+                                     ViscosityField& out) const {
+  const Lattice& l = grid.lattice;
+  const auto size = static_cast<std::ptrdiff_t>(l.size);
+  const double per_h = 1.0 / grid.h;
   for (int p = 0; p < 3; ++p) {
-    edge[p].resize(l.size);
+    std::vector<double>& edge = edges.rate[p];
+    edge.resize(l.size);
     const double* log_ratio = applied_.data() + (1 + p) * size;
     double* weight = out.weight.data() + (1 + p) * size;
     forEachRow(l, [&](std::ptrdiff_t row, int, int) {
@@ -111,15 +118,22 @@ void VariableViscosity::evaluate(const StepProblem& problem, const ViscosityLaw&
         const double scale = scales_.shear[p][e];
         if (!(scale > 0.0)) continue;
         const double root = std::exp(0.5 * log_ratio[e]);
-        const double rate = per_h * scale * stress.shear[p][e] / root;
-        edge[p][e] = rate * rate;
-        weight[e] = std::pow(stress.shear[p][e] * root / scale, 2);
+        const double rate = per_h * scale * stress[p][e] / root;
+        edge[e] = rate * rate;
+        weight[e] = std::pow(stress[p][e] * root / scale, 2);
       }
     });
-    fillHalo(l, edge[p]);
+    fillHalo(l, edge);
   }
+}
 
-  FaceField<double> sum, count;
+void VariableViscosity::evaluateCells(const StepProblem& problem, const ViscosityLaw& law,
+                                      const FaceField<double>& stress, Edges& edges, ViscosityField& out) const {
+  const StaggeredCoefficients<double>& c = problem.coefficients;
+  const Lattice& l = problem.grid.lattice;
+  const double per_h = 1.0 / problem.grid.h;
+  const FaceField<double>& edge = edges.rate;
+  FaceField<double>&sum = edges.sum, &count = edges.count;
   for (int p = 0; p < 3; ++p) {
     sum[p].assign(l.size, 0.0);
     count[p].assign(l.size, 0.0);
@@ -129,9 +143,9 @@ void VariableViscosity::evaluate(const StepProblem& problem, const ViscosityLaw&
     double normal = 0.0;
     for (int a = 0; a < 3; ++a) {
       if (!(scales_.normal[a][cell] > 0.0)) continue;
-      const double rate = per_h * scales_.normal[a][cell] * stress.normal[a][cell] / c.normal[a][cell];
+      const double rate = per_h * scales_.normal[a][cell] * stress[a][cell] / c.normal[a][cell];
       normal += 2.0 * rate * rate;
-      out.weight[cell] += stress.normal[a][cell] * stress.normal[a][cell];
+      out.weight[cell] += stress[a][cell] * stress[a][cell];
     }
     // The four edges of each pair; one that lies in the air or in a solid is stood in for by the others.
     double squared[3][4];
@@ -170,31 +184,47 @@ void VariableViscosity::evaluate(const StepProblem& problem, const ViscosityLaw&
     }
     out.log_ratio[cell] = std::log(0.125 * total / reference_);
   });
-  double cells = 0.0;
-  out.mean_log = 0.0;
+}
+
+double VariableViscosity::meanOfCells(const Lattice& l, const std::vector<double>& log_ratio) const {
+  double sum = 0.0, cells = 0.0;
   for (int k = 0; k < l.n[2]; ++k) {
     for (int j = 0; j < l.n[1]; ++j) {
       for (int i = 0; i < l.n[0]; ++i) {
         if (!counts(l.index(i, j, k))) continue;
-        out.mean_log += out.log_ratio[l.index(i, j, k)];
+        sum += log_ratio[l.index(i, j, k)];
         cells += 1.0;
       }
     }
   }
-  if (cells > 0.0) out.mean_log /= cells;
+  return cells > 0.0 ? sum / cells : 0.0;
+}
 
+void VariableViscosity::evaluateEdges(const Lattice& l, const ViscosityLaw& law, Edges& edges,
+                                      ViscosityField& out) const {
+  const auto size = static_cast<std::ptrdiff_t>(l.size);
   for (int p = 0; p < 3; ++p) {
-    foldHalo(l, sum[p]);
-    foldHalo(l, count[p]);
+    std::vector<double>&sum = edges.sum[p], &count = edges.count[p];
+    const std::vector<double>& rate = edges.rate[p];
+    foldHalo(l, sum);
+    foldHalo(l, count);
     double* log_ratio = out.log_ratio.data() + (1 + p) * size;
     forEachRow(l, [&](std::ptrdiff_t row, int, int) {
       for (auto e = row; e < row + l.faceEnd(0); ++e) {
         if (!(scales_.shear[p][e] > 0.0)) continue;
-        const double eta = count[p][e] > 0.0 ? sum[p][e] / count[p][e] : law.viscosity(std::sqrt(edge[p][e]));
+        const double eta = count[e] > 0.0 ? sum[e] / count[e] : law.viscosity(std::sqrt(rate[e]));
         log_ratio[e] = std::log(eta / reference_);
       }
     });
   }
+}
+
+void VariableViscosity::evaluateFilms(const StepProblem& problem, const ViscosityLaw& law, const StepVector& x,
+                                      ViscosityField& out) const {
+  const StaggeredCoefficients<double>& c = problem.coefficients;
+  const Lattice& l = problem.grid.lattice;
+  const auto size = static_cast<std::ptrdiff_t>(l.size);
+  const double per_h = 1.0 / problem.grid.h;
   for (int a = 0; a < 3; ++a) {
     std::vector<double> slip = x.velocity[a];
     for (const BodyRow& row : problem.rows.drag[a]) slip[row.sample] -= row.coefficient.dot(x.bodies[row.body]);
