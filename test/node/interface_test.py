@@ -490,6 +490,20 @@ class InterfaceTest(unittest.TestCase):
         self.tank.step(3)
         self.assertGreater(self.tank.state('probe').twist.angular.z, 0.05)
 
+    def testWrenchesWhoseSumIsTooLargeAreRefusedAndTheFirstActs(self):
+        second = rospy.Duration.from_sec(1.0)
+        request = dict(body_name='probe', wrench=wrench((HUGE, 0.0, 0.0)), duration=second)
+        self.assertTrue(self.tank.apply(**request).success)
+        response = self.tank.apply(**request)
+        self.assertFalse(response.success)
+        for word in ('wrench', '"probe"', 'force [1.79e+308, 0, 0] N', 'expected a finite sum'):
+            self.assertIn(word, response.status_message)
+        # The other way it is none too many: nothing is left of both.
+        request['wrench'] = wrench((-HUGE, 0.0, 0.0))
+        self.assertTrue(self.tank.apply(**request).success)
+        self.tank.step(2)
+        self.assertLess(abs(self.tank.state('probe').twist.linear.x), 1e-3)
+
     def testBadAppliedWrenchesAreRefused(self):
         second = rospy.Duration.from_sec(1.0)
         good = wrench((1.0, 0.0, 0.0))
@@ -544,7 +558,8 @@ class InterfaceTest(unittest.TestCase):
                  (dict(body_name='post', pose=here), ['post', 'fixed']),
                  (dict(body_name='ball', reference_frame='prob', pose=here), ['prob', '"probe"']),
                  (dict(body_name='ball', pose=pose(NAN, 0.0, 0.05)), ['pose.position', 'finite']),
-                 (dict(body_name='ball', pose=pose(0.0, 0.0, 0.05, (0.0, 0.0, 0.0, 0.0))), ['pose.orientation', 'length 1']),
+                 (dict(body_name='ball', pose=pose(0.0, 0.0, 0.05, (0.0, 0.0, 0.0, 0.0))),
+                  ['pose.orientation', 'length 1']),
                  (dict(body_name='ball', pose=pose(0.0, 0.0, 0.05, (NAN, 0.0, 0.0, 1.0))), ['pose.orientation']),
                  (dict(body_name='ball', pose=here, twist=twist((0.0, NAN, 0.0))), ['twist.linear']),
                  (dict(body_name='ball', pose=here, twist=twist(angular=(0.0, 0.0, float('inf')))), ['twist.angular']),
@@ -600,10 +615,32 @@ class InterfaceTest(unittest.TestCase):
         waitUntil(lambda: self.values('Real-time factor'), 'diagnostics')
         self.assertEqual(self.values('Real-time factor')[0][0], 'Not known yet')
 
+    def testDiagnosticsTellWhereThePausedRunStands(self):
+        waitUntil(lambda: self.values('Solver') and self.values('Solver')[-1][0] == 'No step yet', 'a fresh start')
+        self.assertEqual(self.values('Liquid')[-1][0], 'No step yet')
+        self.tank.step(3)
+        waitUntil(lambda: self.values('Solver')[-1][1]['Step'] == '3', 'the third step')
+        text, values = self.values('Solver')[-1]
+        self.assertEqual((text, values['Status']), ('Converged', 'converged'))
+        self.assertLess(float(values['Residual']), 1e-4)
+        text, values = self.values('Liquid')[-1]
+        self.assertEqual(text, 'Volume kept')
+        self.assertAlmostEqual(float(values['Volume (m^3)']), 0.16 * 0.16 * 0.08, delta=1e-4)
+        self.assertLess(abs(float(values['Change since the start'])), 0.01)
+        self.assertEqual(self.values('Real-time factor')[-1][0], 'Paused')
+
+    def testDiagnosticsNameWhatWasRefused(self):
+        self.tank.get(body_name='balll')
+        waitUntil(lambda: self.values('Commands') and 'balll' in self.values('Commands')[-1][0], 'the refusal')
+        text, values = self.values('Commands')[-1]
+        self.assertTrue(text.startswith('Refused: ~get_body_state: body_name: value "balll"'), text)
+        self.assertEqual('Refused: ' + values['Last refused'], text)
+
     def testDiagnosticsNameTheSolver(self):
         self.tank.step()
         waitUntil(lambda: any(status.name.endswith('Solver') and status.message == 'Converged'
-                              for array in list(self.diagnostics.messages) for status in array.status), 'a healthy solver')
+                              for array in list(self.diagnostics.messages) for status in array.status),
+                  'a healthy solver')
         names = {status.name.split(': ')[-1] for array in self.diagnostics.messages for status in array.status}
         self.assertLessEqual({'Solver', 'Liquid', 'Commands', 'Real-time factor'}, names)
 

@@ -24,7 +24,7 @@ from monolith_tank.msg import Statistics
 from rosgraph_msgs.msg import Clock, Log
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from tank_client import NODE, Collector, Tank, waitUntil
+from tank_client import NODE, Collector, Tank, waitUntil, wrench
 
 PACKAGE = rospkg.RosPack().get_path('monolith_tank')
 SCENES = os.path.join(PACKAGE, 'test/node/scenes')
@@ -134,6 +134,64 @@ class ProcessTest(unittest.TestCase):
         code, output = self.finish('_scene:=' + SMALL, '_paced:=false', '_duration:=0.2', '_progress:=true')
         self.assertEqual(code, 0, output)
         self.assertIn('(100 %)', output)
+        self.assertNotIn('use_sim_time', output)
+
+    def testWithoutSimulatedTimeForOthersItSaysSoAndKeepsItsOwn(self):
+        rospy.delete_param('/use_sim_time')
+        self.addCleanup(rospy.set_param, '/use_sim_time', True)
+        clock, statistics = Collector('/clock', Clock), Collector(NODE + '/statistics', Statistics)
+        process = start('_scene:=' + SMALL, '_start_paused:=true', '_duration:=0')
+        try:
+            tank = Tank()
+            self.assertAlmostEqual(tank.step(3).to_sec(), 0.08)
+            self.assertAlmostEqual(tank.state('ball').header.stamp.to_sec(), 0.08)
+            before = tank.state('ball').twist.linear.x
+            # In the third step from now.
+            self.assertTrue(tank.apply(body_name='ball', wrench=wrench((0.02, 0.0, 0.0)),
+                                       start_time=rospy.Time.from_sec(0.12),
+                                       duration=rospy.Duration.from_sec(0.02)).success)
+            tank.step(2)
+            self.assertLess(abs(tank.state('ball').twist.linear.x - before), 1e-4)
+            tank.step(1)
+            self.assertGreater(tank.state('ball').twist.linear.x - before, 1e-3)
+            tank.unpause()
+            waitUntil(lambda: clock.messages and clock.messages[-1].clock.to_sec() > 0.3, 'simulated time to go on')
+            last = statistics.waitFor()[-1].header.stamp.to_sec()
+            self.assertGreater(last, 0.0)
+            self.assertLess(last, 60.0)
+        finally:
+            process.send_signal(signal.SIGINT)
+            output, _ = process.communicate(timeout=10)
+            process.kill()
+        self.assertEqual(process.returncode, 0, output)
+        self.assertIn('/use_sim_time is not set', output)
+
+    def summaries(self, change, part):
+        """What /diagnostics says first of a part of a running scene, once it says something: level and message."""
+        diagnostics = Collector('/diagnostics', DiagnosticArray)
+        process = start('_scene:=' + self.sceneWith(change), '_duration:=0', '_diagnostic_period:=0.2')
+
+        def found():
+            return [(status.level if isinstance(status.level, int) else ord(status.level), status.message)
+                    for array in list(diagnostics.messages) for status in array.status
+                    if status.name.endswith(part) and status.message not in ('No step yet', 'Not known yet')]
+        try:
+            waitUntil(found, 'diagnostics of ' + part)
+        finally:
+            process.send_signal(signal.SIGINT)
+            output, _ = process.communicate(timeout=10)
+            process.kill()
+        self.assertEqual(process.returncode, 0, output)
+        return found()
+
+    def testRunThatDoesNotKeepUpIsAWarning(self):
+        level, message = self.summaries(lambda scene: scene.update(time_step=1e-4), 'Real-time factor')[0]
+        self.assertEqual(level, 1, message)
+        self.assertRegex(message, r'^Slower than real time: 0\.')
+
+    def testDryTankHasNoVolumeToKeep(self):
+        level, message = self.summaries(lambda scene: scene.pop('liquid'), 'Liquid')[0]
+        self.assertEqual((level, message), (0, 'No liquid'))
 
     def testDurationIsRoundedUpToWholeSteps(self):
         # The initial state has the stamp of one step, 0.02 s.
@@ -226,8 +284,8 @@ class ProcessTest(unittest.TestCase):
         try:
             tank = Tank()
             before = tank.state('ball')
-            waitUntil(lambda: statistics.subscriber.get_num_connections() and diagnostics.subscriber.get_num_connections(),
-                      'topics')
+            waitUntil(lambda: statistics.subscriber.get_num_connections() and
+                      diagnostics.subscriber.get_num_connections(), 'topics')
             tank.unpause()
             waitUntil(lambda: any(not message.committed and message.status == 'not converged'
                                   for message in statistics.messages), 'the failed step on ~statistics')
