@@ -1,6 +1,6 @@
 #pragma once
-// Comparisons of the library's parts with each other; physics is in validation/physics. Each prints its figures and returns
-// whether every goal was met.
+// Comparisons of the library's parts with each other; physics is in validation/physics. Each prints its figures and
+// returns whether every goal was met.
 
 #include "framework/scene_parts.h"
 

@@ -80,8 +80,8 @@ def isOwn(run):
 
 
 def dominant(runs):
-    """What most of the error of a variant's best judged run comes from, and the terms: for each knob, how far the result moves
-    between the run and the finest of the sweep through it."""
+    """What most of the error of a variant's best judged run comes from, and the terms: for each knob, how far the
+    result moves between the run and the finest of the sweep through it."""
     terms = {}
     for varied, name in KNOB_NAMES.items():
         for sweep in sweeps(runs, varied):
@@ -199,9 +199,10 @@ def adviceRuns(runs):
 def advice(cases):
     """For each wanted error and case, the cheapest numerics with which every variant stays below it."""
     lines = ['## Advice', '',
-             'For each wanted error the cheapest numerics of the runs above with which the largest error over the case\'s '
-             'variants stays below it, and what that cost. Every quantity counts that has a goal in any run of its case, also '
-             'where the goal is left out because the grid is too coarse; what is only seen or not does not.', '',
+             'For each wanted error the cheapest numerics of the runs above with which the largest error over the '
+             'case\'s variants stays below it, and what that cost. Every quantity counts that has a goal in any run of '
+             'its case, also where the goal is left out because the grid is too coarse; what is only seen or not does '
+             'not.', '',
              '| case | wanted error | cells across | dt, s | tolerance | CPU | |', '|---|---|---|---|---|---|---|']
     for name, runs in cases.items():
         usable = adviceRuns(runs)
@@ -235,12 +236,12 @@ def writeReport(runs, folder):
     commits = ('commit ' if len(names) == 1 else 'commits ') + ', '.join(names)
     total = {(r['case'], r['variant']) + tuple(r[k] for k in KNOBS): r['cpu_s'] for r in runs}
     lines = ['# Validation', '',
-             'Made by `./tank validate` from %s on %s: %d runs, %.0f s of CPU, one thread each. An error is relative to '
-             'the reference; a cost is CPU time per simulated second, or to reach the steady state. Dashed lines in the plots are '
-             'goals, crosses the published method\'s volume fractions.' % (
+             'Made by `./tank validate` from %s on %s: %d runs, %.0f s of CPU, one thread each. An error is relative '
+             'to the reference; a cost is CPU time per simulated second, or to reach the steady state. Dashed lines in '
+             'the plots are goals, crosses the published method\'s volume fractions.' % (
                  commits, first['machine'], len(total), sum(total.values())), '',
-             'Goals count for the runs at the case\'s own step and tolerance. *Order* is the median of the observed orders of '
-             'convergence; *dominant* names what moves the result most when it alone is refined.', '',
+             'Goals count for the runs at the case\'s own step and tolerance. *Order* is the median of the observed '
+             'orders of convergence; *dominant* names what moves the result most when it alone is refined.', '',
              '| case | worst error against its goal | goal | | CPU s | order in h | in dt | dominant |',
              '|---|---|---|---|---|---|---|---|']
     lines += [summaryRow(name, group) for name, group in cases.items()] + ['']

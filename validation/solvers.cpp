@@ -1,11 +1,9 @@
-#include <omp.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <cstdio>
-#include <cstring>
 
 #include "cases.h"
 #include "simulation/simulation.h"

@@ -50,7 +50,8 @@ class BodyColumns<Real>::Collector {
     if (problem_.coefficients.mass[axis][at] > 0.0) add(at, body, coefficient);
   }
   void add(std::ptrdiff_t place, int body, const Vector6d& coefficient) {
-    const std::uint64_t key = static_cast<std::uint64_t>(place) * 0x9E3779B97F4A7C15u + static_cast<std::uint64_t>(body);
+    const std::uint64_t key =
+        static_cast<std::uint64_t>(place) * 0x9E3779B97F4A7C15u + static_cast<std::uint64_t>(body);
     const std::int32_t i = table_.number(
         key ^ (key >> 32), [&](std::int32_t k) { return out_[k].place == place && out_[k].body == body; });
     if (i == static_cast<std::int32_t>(out_.size())) out_.push_back({static_cast<std::int32_t>(place), body, {}});

@@ -1,6 +1,5 @@
 #include "coupling/contact_rows.h"
 
-#include <cmath>
 #include <map>
 
 namespace monolith {

@@ -1,6 +1,6 @@
 #pragma once
-// Rows of the contacts over the twists of the free bodies: velocity at contact c = J_c v + bias_c, one normal row and two
-// tangential ones. J = (J_n; J_t) with the m normal rows first, then two tangential ones per contact; impulses r =
+// Rows of the contacts over the twists of the free bodies: velocity at contact c = J_c v + bias_c, one normal row and
+// two tangential ones. J = (J_n; J_t) with the m normal rows first, then two tangential ones per contact; impulses r =
 // (lambda; f) are ordered likewise, in the units of coupling/stokes_coefficients.h.
 
 #include <Eigen/Dense>

@@ -11,8 +11,8 @@
 #include <Eigen/Dense>
 #include <vector>
 
+#include "coupling/body_rows.h"
 #include "coupling/solid_fractions.h"
-#include "coupling/stokes_coefficients.h"
 
 namespace monolith {
 
@@ -23,7 +23,8 @@ struct EnclosedWeight {
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  // x_c - x_q, m
 };
 
-// Moves rows.enclosed of cells below the liquid's surface to rows.divergence; the others meet no liquid and are dropped.
+// Moves rows.enclosed of cells below the liquid's surface to rows.divergence; the others meet no liquid and are
+// dropped.
 std::vector<EnclosedWeight> moveEnclosedRows(const MacGrid& grid, const SolidFractions& solids,
                                              const std::vector<RigidBody>& bodies,
                                              const StaggeredCoefficients<double>& coefficients,

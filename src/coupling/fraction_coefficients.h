@@ -21,9 +21,9 @@
 // Two kinds of faces have an unknown but no velocity worth the name; it is taken from the faces around or, in a body,
 // from that (StepProblem::isResolved):
 // - Hardly open ones. Less than 1e-3 is closed and given to the bodies. Of the rest the flux U is well determined,
-//   U/W_F is not: W_F^s leaves the liquid of a sliver free to slip, and if advected it gathers speed (16 m/s in a liquid of
-//   30 Pa s that moves at 1). Closing more of them instead (W_F < 0.05, 0.1) costs buoyancy, +0.3 and +0.6 % of a
-//   sphere at D/h = 8 in place of +0.1 %, and leaves 6 m/s.
+//   U/W_F is not: W_F^s leaves the liquid of a sliver free to slip, and if advected it gathers speed (16 m/s in a
+//   liquid of 30 Pa s that moves at 1). Closing more of them instead (W_F < 0.05, 0.1) costs buoyancy, +0.3 and +0.6 %
+//   of a sphere at D/h = 8 in place of +0.1 %, and leaves 6 m/s.
 // - Those between cells without pressure. Nothing accelerates them with the liquid below, and when the surface rises
 //   they would mix what they were into it: without this rule the wave above loses three quarters of its amplitude.
 
@@ -54,8 +54,8 @@ void buildFractionCoefficients(const Lattice& lattice, const FractionGeometry& g
 void buildFractionRows(const MacGrid& grid, const SolidFractions& solids, const std::vector<RigidBody>& bodies,
                        const StaggeredCoefficients<double>& coefficients, BodyRows& out);
 
-// The coarser levels, in the multigrid's precision: the same construction on averaged geometry; none below a level whose
-// viscous number is least_number or less.
+// The coarser levels, in the multigrid's precision: the same construction on averaged geometry; none below a level
+// whose viscous number is least_number or less.
 void buildCoarseFractionLevels(const Lattice& lattice, const FractionGeometry& geometry,
                                const std::vector<double>& liquid_distance, double viscous_number, double least_number,
                                std::vector<StaggeredCoefficients<float>>& levels);

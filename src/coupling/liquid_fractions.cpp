@@ -54,8 +54,8 @@ void cutCell(const Lattice& l, const std::vector<double>& d, std::ptrdiff_t c, P
   }
 }
 
-// Mean over the octants, of the cells around a sample, that touch it and lie inside the tank. `axes`: those along which the
-// sample lies between cells.
+// Mean over the octants, of the cells around a sample, that touch it and lie inside the tank. `axes`: those along which
+// the sample lies between cells.
 double mean(const Lattice& l, const std::vector<Parts>& octants, const int at[3], const int* axes, int count) {
   const auto c = l.index(at[0], at[1], at[2]);
   double sum = 0.0;

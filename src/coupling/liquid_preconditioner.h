@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "coupling/permeability.h"
-#include "coupling/pressure_regions.h"
 #include "coupling/step_problem.h"
 #include "solve/pressure_multigrid.h"
 #include "solve/velocity_multigrid.h"

@@ -1,7 +1,7 @@
 #pragma once
-// Solid parts of the eight octants of a cube, each from eight planes (geometry/cube_fraction.h): exact for planes, of second
-// order for curved surfaces. The control volumes of a staggered grid (cells, faces, edges) are all made of such octants, so
-// their fractions agree with each other.
+// Solid parts of the eight octants of a cube, each from eight planes (geometry/cube_fraction.h): exact for planes, of
+// second order for curved surfaces. The control volumes of a staggered grid (cells, faces, edges) are all made of such
+// octants, so their fractions agree with each other.
 
 #include <Eigen/Dense>
 #include <array>

@@ -22,8 +22,8 @@ constexpr double kStaleNumber = 4.0;
 constexpr double kLeastDecades = 1.0;
 constexpr double kLeastCost = 1.5;  // iterations a decade, below which none is too many
 
-// By how much a sphere of `radius` cells is harder to move at viscous number `to` than at `from`: added mass, 2/3 pi r^3, and
-// Stokes' drag, 6 pi N r.
+// By how much a sphere of `radius` cells is harder to move at viscous number `to` than at `from`: added mass,
+// 2/3 pi r^3, and Stokes' drag, 6 pi N r.
 double resistanceRatio(double radius, double from, double to) {
   const double added = radius * radius / 9.0;
   return from == to ? 1.0 : (added + to) / (added + from);

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <vector>
 
-#include "coupling/stokes_coefficients.h"
+#include "coupling/body_rows.h"
 
 namespace monolith {
 

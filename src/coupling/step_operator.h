@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "coupling/stokes_coefficients.h"
+#include "coupling/body_rows.h"
 
 namespace monolith {
 

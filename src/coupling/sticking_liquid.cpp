@@ -13,10 +13,10 @@ namespace monolith {
 namespace {
 
 // What a face keeps beyond the linear share for each surface that cuts a segment of it. A linear share makes the speeds
-// in a plane channel exact and its flow rate too small by (h/H)^2; 1/12 more would make the flow rate exact, in the mean
-// over the surface's places in the grid. At walls of the tank, always half a cell away, it is 1/12 too, and 1/4 is
-// nothing stuck. Around spheres the layer is curved: these are the values with which arrays, and boxes at 4 and 10 cells
-// across, come out best.
+// in a plane channel exact and its flow rate too small by (h/H)^2; 1/12 more would make the flow rate exact, in the
+// mean over the surface's places in the grid. At walls of the tank, always half a cell away, it is 1/12 too, and 1/4 is
+// nothing stuck. Around spheres the layer is curved: these are the values with which arrays, and boxes at 4 and 10
+// cells across, come out best.
 constexpr double kExtraAtBody = 1.0 / 24.0;
 constexpr double kExtraAtWall = 1.0 / 6.0;
 

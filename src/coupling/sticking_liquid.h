@@ -5,10 +5,10 @@
 // linear, so half of that layer's momentum and flux belong to the surface, half to the face. The share
 // (theta_- + theta_+)/2 of the face's control volume (the least over the axes), and a little more where a surface cuts,
 // stays the face's; the rest, and all liquid of faces whose centre is solid, sticks: it moves as the solid does at the
-// face, with its mass, weight and flux. W_F + sum_i W_Si + W_wall stays 1, momentum and buoyancy stay exact. Measured on
-// periodic arrays of spheres (c 0.008 to 0.128, four positions): drag within 0.45 % at D/h = 10, and -0.8 to 0.2 % in the
-// mean over the positions at 6 and 4; with no sticking liquid -0.5 % at 10 and -1.7 to -5.7 % at 4. The error of a plane
-// channel's flow rate is halved.
+// face, with its mass, weight and flux. W_F + sum_i W_Si + W_wall stays 1, momentum and buoyancy stay exact. Measured
+// on periodic arrays of spheres (c 0.008 to 0.128, four positions): drag within 0.45 % at D/h = 10, and -0.8 to 0.2 %
+// in the mean over the positions at 6 and 4; with no sticking liquid -0.5 % at 10 and -1.7 to -5.7 % at 4. The error of
+// a plane channel's flow rate is halved.
 
 #include <vector>
 

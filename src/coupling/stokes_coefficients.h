@@ -13,8 +13,8 @@
 //   J_p     divergence rows differences of neighbouring W_Si: cancels inside a body
 //   J_s     stress rows     what a body's twist adds to a stress sample
 //
-// A face whose centre is solid but whose control volume is not wholly so ("sliver") has an unknown when the liquid slips:
-// inviscid, or so little viscous that a time step does not resolve the film (see sticking_liquid.h for the other
+// A face whose centre is solid but whose control volume is not wholly so ("sliver") has an unknown when the liquid
+// slips: inviscid, or so little viscous that a time step does not resolve the film (see sticking_liquid.h for the other
 // case). Viscosity then ties it to the solid it lies in (drag).
 
 #include <Eigen/Dense>
@@ -36,15 +36,17 @@ using FaceKinds = std::array<std::vector<FaceKind>, 3>;
 double liquidPart(double distance_low, double distance_high);
 
 struct StokesGeometry {
-  const FaceField<double>* fluid = nullptr;           // W_F
-  const FaceField<float>* solid_distance = nullptr;   // cell widths
-  const std::vector<double>* liquid_distance = nullptr;  // cell widths, negative in liquid, at cell centres, halo filled
-  // Solids' distance at cell centres, halo filled: with it segments find curved surfaces where they are; may be missing.
+  const FaceField<double>* fluid = nullptr;          // W_F
+  const FaceField<float>* solid_distance = nullptr;  // cell widths
+  // In cell widths, negative in liquid, at cell centres, halo filled.
+  const std::vector<double>* liquid_distance = nullptr;
+  // Solids' distance at cell centres, halo filled: with it segments find curved surfaces where they are; may be
+  // missing.
   const std::vector<float>* solid_cell_distance = nullptr;
 };
 
-// From what the operator computes at a sample to its rate, in 1/s times the cell width, where the viscosity is the one that the
-// coefficients were built with; 0 where there is no sample.
+// From what the operator computes at a sample to its rate, in 1/s times the cell width, where the viscosity is the one
+// that the coefficients were built with; 0 where there is no sample.
 struct StrainScales {
   FaceField<double> normal;  // (U_a[c + a] - U_a[c]) -> D_aa
   FaceField<double> shear;   // t -> 2 D_ab
@@ -65,8 +67,8 @@ void buildBodyRows(const MacGrid& grid, const SolidFractions& solids, const std:
                    const StokesGeometry& geometry, const StaggeredCoefficients<double>& coefficients,
                    const FaceKinds& kinds, BodyRows& out);
 
-// The coarser levels, in the multigrid's precision: the same construction on averaged geometry; none below a level whose
-// viscous number is least_number or less.
+// The coarser levels, in the multigrid's precision: the same construction on averaged geometry; none below a level
+// whose viscous number is least_number or less.
 void buildCoarseLevels(const Lattice& lattice, const StokesGeometry& geometry, double viscous_number,
                        double least_number, std::vector<StaggeredCoefficients<float>>& levels);
 

@@ -3,7 +3,6 @@
 // them.
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <vector>
 

@@ -1,7 +1,6 @@
 #include "coupling/stress_fractions.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "coupling/octant_fractions.h"
 
@@ -74,8 +73,8 @@ void sampleBody(const MacGrid& grid, const RigidBody& body, const BodyFractions&
   });
 }
 
-// One kind of sample: `fluid` holds the part of each that lies in the tank, and is left with what the bodies do not take.
-// Where they overlap they share.
+// One kind of sample: `fluid` holds the part of each that lies in the tank, and is left with what the bodies do not
+// take. Where they overlap they share.
 void share(const Lattice& l, int pair, const SolidFractions& solids, const std::vector<std::vector<double>*>& parts,
            std::vector<double>& fluid) {
   std::vector<double> solid(l.size, 0.0);

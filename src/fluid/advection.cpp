@@ -11,8 +11,8 @@
 namespace monolith {
 namespace {
 
-// The mirror image with the sign turned where the layer at the wall is resolved, the profile goes on straight. A layer far
-// thinner than a cell would have a jump there, at which the cubic overshoots step by step: there liquid slips.
+// The mirror image with the sign turned where the layer at the wall is resolved, the profile goes on straight. A layer
+// far thinner than a cell would have a jump there, at which the cubic overshoots step by step: there liquid slips.
 double beyondStickingWall(double first, double second) {
   return std::clamp(2.0 * first - second, -std::abs(first), std::abs(first));
 }

@@ -35,8 +35,8 @@ void advectAccelerated(const MacGrid& grid, const FaceField<double>& velocity, c
                        const FaceMask& known, double dt, FaceField<double>& moved, FaceField<double>& gained,
                        FaceField<double>& mean);
 
-// A cell-centred field moved by the velocity over dt, where its size is less than `band`; elsewhere it stays. Halos must
-// be filled.
+// A cell-centred field moved by the velocity over dt, where its size is less than `band`; elsewhere it stays. Halos
+// must be filled.
 void advectCells(const MacGrid& grid, const FaceField<double>& velocity, const std::vector<double>& field, double dt,
                  double band, std::vector<double>& moved);
 

@@ -5,6 +5,7 @@
 
 #include "fluid/advection.h"
 #include "fluid/interpolation.h"
+#include "fluid/level_set.h"
 #include "solve/whole_fields.h"
 
 namespace monolith {

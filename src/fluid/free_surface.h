@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "fluid/filled_boxes.h"
-#include "fluid/level_set.h"
 #include "fluid/mac_grid.h"
 #include "solve/staggered_operator.h"
 

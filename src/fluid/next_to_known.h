@@ -10,8 +10,8 @@
 
 namespace monolith {
 
-// Calls f(index, {i, j, k}) for those of plane k, in order; known: 0 or 1, its halo filled. 7 loads of a byte each, whole
-// vectors of them, and few are found: far cheaper than to ask face by face.
+// Calls f(index, {i, j, k}) for those of plane k, in order; known: 0 or 1, its halo filled. 7 loads of a byte each,
+// whole vectors of them, and few are found: far cheaper than to ask face by face.
 template <class Function>
 void forEachNextToKnown(const Lattice& l, int k, const std::uint8_t* known, Function&& f) {
   const auto sy = l.stride[1], sz = l.stride[2];

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fluid/free_surface.h"
+#include "fluid/level_set.h"
 #include "solve/neighbours.h"
 #include "solve/whole_fields.h"
 

@@ -3,10 +3,8 @@
 // advectFace() and advectCell() of advection.h one by one, so that results agree but for round-off.
 
 #include <array>
-#include <cstdint>
 #include <vector>
 
-#include "fluid/mac_grid.h"
 #include "solve/staggered_operator.h"
 
 namespace monolith {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace monolith {
 
@@ -28,8 +27,8 @@ double insideFraction(double distance, const Eigen::Vector3d& gradient, double w
   const double a = low ? alpha : 1.0 - alpha;
   const double n1 = n[0], n2 = n[1], n3 = n[2], n12 = n1 + n2;
   double volume = 0.0;
-  // Where the plane is nearly parallel to faces of the cube the forms that divide by n1 n2 would lose every digit; they are
-  // used only where their terms are as small as the divisor, and n1 of almost nothing is none.
+  // Where the plane is nearly parallel to faces of the cube the forms that divide by n1 n2 would lose every digit; they
+  // are used only where their terms are as small as the divisor, and n1 of almost nothing is none.
   constexpr double kTiny = 1e-9;
   if (a >= n12 && n12 <= n3) {
     volume = (2.0 * a - n12) / (2.0 * n3);

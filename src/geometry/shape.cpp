@@ -1,6 +1,5 @@
 #include "geometry/shape.h"
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "geometry/mesh.h"

@@ -4,7 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <array>
-#include <memory>
 
 namespace monolith {
 

@@ -2,8 +2,6 @@
 
 #include <urdf_model/link.h>
 
-#include <algorithm>
-
 #include "node/message_conversion.h"
 #include "scene/urdf_parser.h"
 

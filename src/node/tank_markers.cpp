@@ -1,7 +1,5 @@
 #include "node/tank_markers.h"
 
-#include <array>
-
 #include "node/message_conversion.h"
 
 namespace monolith {

@@ -3,7 +3,6 @@
 // normal contact Jacobian J_n. Broad phase by FCL; sign and manifold by convex shapes and the distance fields.
 
 #include <Eigen/Geometry>
-#include <string>
 #include <vector>
 
 #include "rigid/rigid_body.h"

@@ -8,8 +8,8 @@ namespace monolith {
 namespace {
 
 // rad. A contact that lies no higher above the lowest than its distance from those kept times this may close by a small
-// rotation; one further up counts as so much nearer. Else the far rim of a round body, which is in reach but cannot touch
-// yet, takes the places of those that carry it.
+// rotation; one further up counts as so much nearer. Else the far rim of a round body, which is in reach but cannot
+// touch yet, takes the places of those that carry it.
 constexpr double kSmallRotation = 0.05;
 
 }  // namespace

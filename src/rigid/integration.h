@@ -27,8 +27,9 @@ struct FreeMotion {
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();       // likewise
 };
 
-// Momentum and angular momentum are changed by gravity and `held` over dt. `expected`: torque that the solve is going to
-// add, an estimate that only the gyroscopic term and the orientation follow. Torque-free, energy is kept at any spin.
+// Momentum and angular momentum are changed by gravity and `held` over dt. `expected`: torque that the solve is going
+// to add, an estimate that only the gyroscopic term and the orientation follow. Torque-free, energy is kept at any
+// spin.
 FreeMotion freeMotion(const RigidBody& body, const Eigen::Vector3d& gravity, const Wrench& held,
                       const Eigen::Vector3d& expected, double dt);
 

@@ -1,7 +1,6 @@
 #include "rigid/mesh_manifold.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "rigid/contact_reduction.h"
 #include "rigid/corner_contact.h"

@@ -5,7 +5,6 @@
 
 #include <Eigen/Geometry>
 #include <array>
-#include <memory>
 #include <vector>
 
 #include "geometry/shape.h"

@@ -50,8 +50,8 @@ void readContact(const YAML::Node& node, const std::vector<BodyDescription>& bod
     pair.b = between[1].as<std::string>();
     for (const std::string& name : {pair.a, pair.b}) {
       if (std::find(names.begin(), names.end(), name) != names.end()) continue;
-      entry.fail("between", "names of bodies or materials of this scene, or \"walls\"; the nearest to " + name + " is " +
-                                nearestWord(name, names));
+      entry.fail("between", "names of bodies or materials of this scene, or \"walls\"; the nearest to " + name +
+                                " is " + nearestWord(name, names));
     }
     const bool body = std::any_of(bodies.begin(), bodies.end(), [&](const auto& b) { return b.name == pair.a; });
     if (pair.a == pair.b && (body || pair.a == kWallsName)) {

@@ -5,7 +5,6 @@
 #include <sstream>
 
 #include "rigid/overlap.h"
-#include "rigid/rotation.h"
 
 namespace monolith {
 namespace {

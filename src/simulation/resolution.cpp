@@ -33,7 +33,9 @@ BodyResolution judgeResolution(double cell_width, const RigidBody& body) {
   const double wall = thickness[static_cast<std::size_t>(kPartOfSurface * static_cast<double>(thickness.size()))];
   const double across = sides[0];
   std::ostringstream text;
-  const auto tell = [&](double length) { text << length << " m, " << length / cell_width << " cells of tank/cell_width"; };
+  const auto tell = [&](double length) {
+    text << length << " m, " << length / cell_width << " cells of tank/cell_width";
+  };
   if (divides && wall < kLeastWall * cell_width * (1.0 - kTolerance)) {
     text << "body '" << body.name << "': walls of ";
     tell(wall);

@@ -10,8 +10,8 @@ namespace {
 constexpr double kProportioning = 1.0;  // Gamma
 constexpr int kRefresh = 50;            // iterations after which the gradient is computed anew
 
-// The gradient split as the method needs it: `free` where no bound is active, `chopped` where leaving an active one would
-// decrease the objective.
+// The gradient split as the method needs it: `free` where no bound is active, `chopped` where leaving an active one
+// would decrease the objective.
 struct Gradients {
   Eigen::VectorXd free, chopped;
 };

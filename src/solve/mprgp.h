@@ -21,8 +21,8 @@ struct MprgpReport {
 
 using VectorMap = std::function<void(const Eigen::VectorXd& x, Eigen::VectorXd& y)>;
 
-// The first `unconstrained` entries have no bound; `precondition` acts on them (symmetric positive definite). `norm`: upper
-// bound of the largest eigenvalue of A on the others. x: start on entry (made feasible), minimiser on return.
+// The first `unconstrained` entries have no bound; `precondition` acts on them (symmetric positive definite). `norm`:
+// upper bound of the largest eigenvalue of A on the others. x: start on entry (made feasible), minimiser on return.
 [[nodiscard]] MprgpReport solveMprgp(const VectorMap& apply, const VectorMap& precondition, double norm,
                                      const Eigen::VectorXd& b, Eigen::Index unconstrained, const MprgpOptions& options,
                                      Eigen::VectorXd& x);

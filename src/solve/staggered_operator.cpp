@@ -1,7 +1,5 @@
 #include "solve/staggered_operator.h"
 
-#include <algorithm>
-
 namespace monolith {
 
 template <class Real>

@@ -4,7 +4,8 @@
 //
 // Velocities U_a (a = 0, 1, 2) live on faces, zero wherever mass[a] is zero. With s_a[c] = U_a at the face called c:
 //   normal sample of cell c, axis a:   s = normal[a][c] (U_a[c + a] - U_a[c])
-//   shear sample of edge c, pair (a,b): t = shear[ab].first (U_a[c] - U_a[c - b]) + shear[ab].second (U_b[c] - U_b[c - a])
+//   shear sample of edge c, pair (a,b):
+//                      t = shear[ab].first (U_a[c] - U_a[c - b]) + shear[ab].second (U_b[c] - U_b[c - a])
 //   viscous block   A U = mass U + drag U + D^T (s, t)        symmetric, positive definite where mass > 0
 //   divergence      (C U)[c] = sum_a open[a][c + a] U_a[c + a] - open[a][c] U_a[c], on cells with pressure
 //   pressure block  L = C mass^-1 C^T                          symmetric, positive semi-definite
@@ -87,7 +88,8 @@ void computeDivergence(const StaggeredCoefficients<Real>& c, const FaceField<Rea
 
 // U_a += factor * (C^T p)_a on faces with an unknown; p's halo must be filled.
 template <class Real>
-void addPressureForce(const StaggeredCoefficients<Real>& c, const std::vector<Real>& p, Real factor, FaceField<Real>& U);
+void addPressureForce(const StaggeredCoefficients<Real>& c, const std::vector<Real>& p, Real factor,
+                      FaceField<Real>& U);
 
 // The same coefficients in another precision.
 template <class To, class From>

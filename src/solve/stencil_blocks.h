@@ -46,14 +46,14 @@ class StencilBlocks : private StencilLayout {
   using Row = std::array<std::vector<Real>, Count>;
   using StencilLayout::Lost;
 
-  // fill(component, row, width, out) writes the coefficients of `width` lanes from index `row` on, all zero: no unknown;
-  // or returns false, then there is none in the row. `first[component]`: index along x of the first lane of a row.
-  // It is not called for rows that are steady since the last build, if that was of the generation before.
+  // fill(component, row, width, out) writes the coefficients of `width` lanes from index `row` on, all zero: no
+  // unknown; or returns false, then there is none in the row. `first[component]`: index along x of the first lane of a
+  // row. It is not called for rows that are steady since the last build, if that was of the generation before.
   template <class FillRow>
   void build(const Lattice& l, const std::vector<int>& first, FillRow&& fill, const SteadyRows* steady = nullptr);
 
-  // Kernels write blocks only: a field is zero elsewhere if it was before. One that has followed every build, the last of
-  // them `build`, needs zeros just in the blocks that are lost since: clears those of a component, else all of it.
+  // Kernels write blocks only: a field is zero elsewhere if it was before. One that has followed every build, the last
+  // of them `build`, needs zeros just in the blocks that are lost since: clears those of a component, else all of it.
   template <class Value>
   void clear(int component, long build, std::vector<Value>& field) const {
     if (!follows(build) || field.size() != lattice_.size) {

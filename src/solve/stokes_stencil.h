@@ -10,7 +10,6 @@
 //                                       + x- (v[f] - v[f-a]) - x+ (v[f+b] - v[f+b-a])
 
 #include <array>
-#include <vector>
 
 #include "solve/staggered_operator.h"
 #include "solve/stencil_blocks.h"
@@ -77,8 +76,8 @@ template <class Real>
 void applyDivergence(const Lattice& l, const CellBlocks<Real>& blocks, const Faces<const Real>& U, Real factor,
                      const Real* g, Real* y);
 
-// Chebyshev on A x = b: d = keep d + scale D^-1 (b - A x), next = x + d. Forming d from two iterates instead would stream a
-// fifth less and lose digits that large viscous numbers need.
+// Chebyshev on A x = b: d = keep d + scale D^-1 (b - A x), next = x + d. Forming d from two iterates instead would
+// stream a fifth less and lose digits that large viscous numbers need.
 void chebyshevStep(const Lattice& l, const FaceBlocks<float>& blocks, const Faces<const float>& x,
                    const Faces<const float>& b, float keep, float scale, const Faces<float>& d,
                    const Faces<float>& next);

@@ -18,8 +18,8 @@ constexpr double kLeastCoarsenedNumber = 0.05;
 class VelocityMultigrid {
  public:
   // The finest level with its transfer weights, and the levels below it: coarse[1] to coarse[count - 1], each
-  // coarsened() of the one before. `fine` and `transfer` must outlive the multigrid. generation: of the coarse levels, which are
-  // what they were if it is the last one. smoother_degree: Chebyshev steps before and after.
+  // coarsened() of the one before. `fine` and `transfer` must outlive the multigrid. generation: of the coarse levels,
+  // which are what they were if it is the last one. smoother_degree: Chebyshev steps before and after.
   void set(const Lattice& lattice, const FaceBlocks<float>& fine, const FaceField<float>& transfer,
            const std::vector<StaggeredCoefficients<float>>& coarse, std::size_t count, long generation,
            int smoother_degree);

@@ -23,8 +23,9 @@ struct Corner {
     problem.impulse_scale = 0.5;
     problem.dt = 0.01;
     // A corner of the box on the floor and at a wall, another corner on the floor, and one near that.
-    for (const auto& [x, normal] : {std::pair(0.0, Eigen::Vector3d::UnitZ()), std::pair(0.0, Eigen::Vector3d::UnitX()),
-                                    std::pair(0.2, Eigen::Vector3d::UnitZ()), std::pair(0.195, Eigen::Vector3d::UnitZ())}) {
+    for (const auto& [x, normal] :
+         {std::pair(0.0, Eigen::Vector3d::UnitZ()), std::pair(0.0, Eigen::Vector3d::UnitX()),
+          std::pair(0.2, Eigen::Vector3d::UnitZ()), std::pair(0.195, Eigen::Vector3d::UnitZ())}) {
       Contact contact;
       contact.point = {x, 0.1, 0.0};
       contact.normal = normal;

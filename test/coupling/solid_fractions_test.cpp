@@ -173,7 +173,8 @@ TEST(SolidFractions, BodiesAreSampledAgainOnceTheyHaveMoved) {
   shape.kind = Shape::Kind::kBox;
   shape.box_size = {0.5, 0.3, 0.4};
   body.shapes = {shape};
-  body.X_WB = Eigen::Translation3d(0.81, 0.76, 0.83) * Eigen::AngleAxisd(0.4, Eigen::Vector3d(1.0, 2.0, 3.0).normalized());
+  body.X_WB =
+      Eigen::Translation3d(0.81, 0.76, 0.83) * Eigen::AngleAxisd(0.4, Eigen::Vector3d(1.0, 2.0, 3.0).normalized());
   std::vector<RigidBody> bodies = {makeRigidBody(body, 0.05)};
   SolidSampler sampler(grid);
   const auto error = [&] {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "coupling/coupled_system.h"
 #include "coupling/direct_solver.h"
 #include "coupling/fast_solver.h"
 #include "coupling/iterative_coupling.h"

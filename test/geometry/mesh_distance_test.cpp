@@ -8,7 +8,6 @@
 #include <random>
 #include <thread>
 
-#include "geometry/mesh.h"
 #include "geometry/shape_distance.h"
 #include "mesh_samples.h"
 

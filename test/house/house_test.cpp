@@ -91,6 +91,13 @@ TEST(Rules, LongFileIsFound) {
   EXPECT_EQ(findLongFiles({{"src/solve/a.h", text + "x"}}).size(), 1u);
 }
 
+TEST(Rules, WideLineIsFound) {
+  const std::string line(kMaximumColumns, 'x');
+  EXPECT_EQ(findWideLines({{"src/solve/a.h", line + "\n" + line + "x\n"}}),
+            Violations{"src/solve/a.h:2: 121 columns, expected at most 120"});
+  EXPECT_EQ(joined(findWideLines({{"README.md", line + "x"}})), "");
+}
+
 TEST(Rules, ForbiddenWordIsFound) {
   for (const std::string& word : {std::string("TO") + "DO", std::string("FIX") + "ME", std::string("XX") + "X",
                                   std::string("DES") + "IGN"}) {
@@ -126,6 +133,10 @@ TEST(House, NoImportCycles) { EXPECT_EQ(joined(findImportCycles(sources())), "")
 TEST(House, HeadersAreGuarded) { EXPECT_EQ(joined(findUnguardedHeaders(sources())), ""); }
 
 TEST(House, FilesAreShort) { EXPECT_EQ(joined(findLongFiles(sources())), ""); }
+
+TEST(House, LinesAreNarrow) {
+  EXPECT_EQ(joined(findWideLines(readFiles(MONOLITH_SOURCE_DIR, {"src", "test", "validation", "launch"}))), "");
+}
 
 TEST(House, NothingUnfinishedAndNoPathOfOneMachine) {
   const Files files = readFiles(MONOLITH_SOURCE_DIR, {"src", "test", "validation", "launch", "config", "urdf", "msg",

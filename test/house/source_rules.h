@@ -22,6 +22,7 @@ using Files = std::map<std::string, std::string>;  // path relative to the repos
 using Violations = std::vector<std::string>;
 
 constexpr int kMaximumLines = 600;
+constexpr std::size_t kMaximumColumns = 120;
 
 struct Import {
   int line;
@@ -195,6 +196,24 @@ inline Violations findLongFiles(const Files& files) {
     if (lines > static_cast<std::size_t>(kMaximumLines)) {
       violations.push_back(path + ": " + std::to_string(lines) + " lines, expected at most " +
                            std::to_string(kMaximumLines));
+    }
+  }
+  return violations;
+}
+
+// Of code: texts and tables have lines as long as they need.
+inline Violations findWideLines(const Files& files) {
+  Violations violations;
+  for (const auto& [path, text] : files) {
+    if (!hasEnding(path, ".h") && !hasEnding(path, ".cpp") && !hasEnding(path, ".py")) continue;
+    int number = 0;
+    for (const std::string& line : splitLines(text)) {
+      ++number;
+      if (line.size() > kMaximumColumns) {
+        violations.push_back(
+            located(path, number,
+                    std::to_string(line.size()) + " columns, expected at most " + std::to_string(kMaximumColumns)));
+      }
     }
   }
   return violations;

@@ -79,7 +79,8 @@ liquid:
   boxes: [{min: [1.0, 2.0, 3.0], max: [2.0, 3.0, 3.5]}]
 gravity: [1.0, 0.0, -2.0]
 time_step: 0.05
-solver: {discretisation: fractions, time_stepping: backward_euler, tolerance: 1e-8, maximum_iterations: 7, threads: 2, cfl: 0.5}
+solver: {discretisation: fractions, time_stepping: backward_euler, tolerance: 1e-8, maximum_iterations: 7, threads: 2,
+         cfl: 0.5}
 bodies:
   - name: free_one
     urdf: ball.urdf

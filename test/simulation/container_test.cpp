@@ -108,7 +108,8 @@ TEST(Container, HoldsItsLiquidWhileItIsMoved) {
     double twist, amplitude;
   };
   for (const double viscosity : {0.01, 2.0}) {
-    for (const Motion& motion : {Motion{0, 0.0, 0.03}, Motion{2, 0.01, 0.0}, Motion{4, 0.0, 0.2}, Motion{5, 0.0, 0.4}}) {
+    for (const Motion& motion :
+         {Motion{0, 0.0, 0.03}, Motion{2, 0.01, 0.0}, Motion{4, 0.0, 0.2}, Motion{5, 0.0, 0.4}}) {
       Scene scene = filledBucket(2.0, 0.3, viscosity);
       PrescribedMotion& prescribed = scene.bodies[0].prescribed;
       scene.bodies[0].motion = BodyMotion::kPrescribed;

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "scene/solid_body.h"
 #include "simulation/simulation.h"
 

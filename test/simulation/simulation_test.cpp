@@ -623,8 +623,8 @@ TEST(Simulation, AWrenchPushesAndResetForgetsIt) {
   EXPECT_LT(simulation.bodyStates()[0].velocity.norm(), 1e-9);
 }
 
-// Boxes that are pushed about at their limit of friction: the solver learns from steps how to make the next, and must not
-// know anything of them after a reset.
+// Boxes that are pushed about at their limit of friction: the solver learns from steps how to make the next, and must
+// not know anything of them after a reset.
 TEST(Simulation, ARunAfterAResetIsTheSameToTheBit) {
   Scene scene = tank(0.08, 2.0);
   scene.contact.friction = 0.3;

@@ -1,7 +1,5 @@
 // Time, iterations and memory of a step against size, threads, viscosity, bodies and contacts.
 
-#include <algorithm>
-#include <cmath>
 #include <fstream>
 #include <iostream>
 #include <map>

@@ -2,7 +2,6 @@
 // The measurements. Each runs in a process of its own: memory starts from nothing, and so do the threads.
 
 #include <functional>
-#include <string>
 
 #include "tank_scene.h"
 

@@ -20,7 +20,8 @@ struct Row {
   double against_ms = 0.0;
   double against_error = 0.0;
   double against_tolerance = 0.0;
-  double contact_factor = 0.0;    // over a step with the same bodies a cell apart; 0: no contacts, or they touch there too
+  // Over a step with the same bodies a cell apart; 0: no contacts, or they touch there too.
+  double contact_factor = 0.0;
   double thread_speedup = 1.0;    // over the first number of threads
   double iteration_growth = 1.0;  // over the first size
 };

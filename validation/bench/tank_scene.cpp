@@ -15,8 +15,8 @@ constexpr double kFriction = 0.3;
 // Off the grid's symmetry, m.
 const Eigen::Vector3d kOffset(0.0131, -0.0073, 0.0057);
 
-// Boxes (four contact points) and spheres (one) in columns of two, `gap` above the floor and each other; returns the height
-// that they take up.
+// Boxes (four contact points) and spheres (one) in columns of two, `gap` above the floor and each other; returns the
+// height that they take up.
 double addResting(int contacts, double gap, std::vector<BodyDescription>& bodies) {
   if (contacts == 0) return 0.0;
   const int boxes = contacts / 4;

@@ -1,6 +1,6 @@
-// A square column of liquid that is let go in an empty channel: how fast its front runs and its back falls (Martin & Moyce 1952,
-// Phil. Trans. R. Soc. A 244, 312, column of base a and height a). The gate of the experiment delays its start by an unknown time: the
-// front's speed once it runs is compared, not its place.
+// A square column of liquid that is let go in an empty channel: how fast its front runs and its back falls (Martin and
+// Moyce 1952, Phil. Trans. R. Soc. A 244, 312, column of base a and height a). The gate of the experiment delays its
+// start by an unknown time: the front's speed once it runs is compared, not its place.
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
-// Bodies that float: heave of a half-immersed sphere (Kramer et al. 2021, Energies 14, 269), roll of a sphere whose mass
-// lies below its centre, and the tilt at which a long square bar comes to rest.
+// Bodies that float: heave of a half-immersed sphere (Kramer et al. 2021, Energies 14, 269), roll of a sphere whose
+// mass lies below its centre, and the tilt at which a long square bar comes to rest.
 
 #include <cmath>
 
@@ -69,8 +69,8 @@ std::vector<Measurement> roll(const Numerics& numerics, Meter& meter) {
   Simulation simulation(scene);
   const double found =
       period(simulation, meter, 3.0, [&] { return simulation.bodyStates()[0].X_WB.linear()(0, 2); });
-  // Sway added mass of a half-immersed sphere, of its mass, at this frequency: between 0.27 and 0.6 (Hulme 1982, J. Fluid
-  // Mech. 121, 443); it moves the period by less than 0.2 %.
+  // Sway added mass of a half-immersed sphere, of its mass, at this frequency: between 0.27 and 0.6 (Hulme 1982, J.
+  // Fluid Mech. 121, 443); it moves the period by less than 0.2 %.
   constexpr double kSway = 0.5;
   const double per_mass = sphere.inertia_Bcm(1, 1) / sphere.mass + kDrop * kDrop * kSway / (1.0 + kSway);
   const double amplitude = 1.0 + kTilt * kTilt / 16.0;

@@ -1,5 +1,5 @@
-// Liquid that starts with its surface tilted comes to rest flat, at the level that its volume fills, also around a body that
-// stands in it.
+// Liquid that starts with its surface tilted comes to rest flat, at the level that its volume fills, also around a body
+// that stands in it.
 
 #include <cmath>
 

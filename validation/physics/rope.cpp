@@ -1,6 +1,7 @@
-// A slender column of very viscous liquid that stands on the floor gives way under its weight by folding, as honey does;
-// one of thin liquid, with the same small kinks, slumps without. Folding needs the full stress at the free surface, solved
-// together with pressure (Larionov, Batty & Bridson 2017, ACM Trans. Graph. 36, 101): only seen in kind.
+// A slender column of very viscous liquid that stands on the floor gives way under its weight by folding, as honey
+// does; one of thin liquid, with the same small kinks, slumps without. Folding needs the full stress at the free
+// surface, solved together with pressure (Larionov, Batty & Bridson 2017, ACM Trans. Graph. 36, 101): only seen in
+// kind.
 
 #include <cmath>
 #include <map>
@@ -36,7 +37,7 @@ Scene columnScene(double viscosity, double dt, const Numerics& numerics) {
 
 struct Column {
   double height = 0.0;  // m
-  double lean = 0.0;    // how far the axis leaves the vertical, in widths: of slices of two cells, but those at the ends
+  double lean = 0.0;  // how far the axis leaves the vertical, in widths: of slices of two cells, but those at the ends
 };
 
 Column columnOf(const Simulation& simulation) {

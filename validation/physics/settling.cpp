@@ -1,9 +1,9 @@
 // A sphere that settles in a closed tank of silicone oil: ten Cate, Nieuwstad, Derksen & Van den Akker 2002, Phys.
 // Fluids 14, 4012. The shipped scene is their case E1. Peak speed by their tables (their scatter: 1 %; u_inf is printed
-// with two digits, so it is taken from Abraham's correlation, as theirs is); velocity over time by points digitised from
-// their figure, among them those of the deceleration above the floor. The digitised points are 3 to 4 % too fast by their
-// own integral, so they have a wide goal. E1's peak is above what the sphere could reach in that tank without any inertia,
-// 0.0355 m/s (Stokes flow, drag factor 1.3887), so no result can come closer than 2.1 %.
+// with two digits, so it is taken from Abraham's correlation, as theirs is); velocity over time by points digitised
+// from their figure, among them those of the deceleration above the floor. The digitised points are 3 to 4 % too fast
+// by their own integral, so they have a wide goal. E1's peak is above what the sphere could reach in that tank without
+// any inertia, 0.0355 m/s (Stokes flow, drag factor 1.3887), so no result can come closer than 2.1 %.
 
 #include <algorithm>
 #include <cmath>

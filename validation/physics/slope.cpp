@@ -1,7 +1,6 @@
 // A box on a slope, dry and in liquid that is at rest: the angle at which it begins to slide, that it rests below it,
 // and how far it slides above it. The tank is tilted: gravity turns.
 
-#include <algorithm>
 #include <cmath>
 
 #include "framework/meter.h"

@@ -1,5 +1,5 @@
-// A sphere that is let go in viscous liquid: buoyancy, added mass, and the drag of the layer that grows about it (Basset 1888). Early
-// on, before the layer feels the walls.
+// A sphere that is let go in viscous liquid: buoyancy, added mass, and the drag of the layer that grows about it
+// (Basset 1888). Early on, before the layer feels the walls.
 
 #include <cmath>
 
