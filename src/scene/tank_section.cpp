@@ -79,8 +79,8 @@ void checkMemory(const YAML::Node& node, const Scene& scene, double usable, Viol
   std::ostringstream text;
   text << "tank.cell_width: value " << shownValue(node["cell_width"])
        << ": expected a tank that fits in memory: " << (scene.tank.size / scene.tank.cell_width).array().round().prod()
-       << " cells need about " << needed / gigabyte << " GB by this solver, of which " << usable / gigabyte
-       << " GB may be used here";
+       << " cells need about " << needed / gigabyte << " GB by this solver, this machine or container has "
+       << usable / gigabyte << " GB";
   violations.add(node["cell_width"], text.str());
 }
 

@@ -19,7 +19,7 @@ struct Plates {
     MacGrid grid;
     grid.lattice = Lattice({16, 16, 32}, {true, true, false});
     grid.h = 0.05;
-    problem = std::make_unique<StepProblem>(grid, Discretisation::kFitted, 0.0);
+    problem = std::make_unique<StepProblem>(grid);
     const Lattice& l = problem->grid.lattice;
     SolidSampler(problem->grid).sample(bodies, solids);
     const std::vector<double> liquid(l.size, -100.0);

@@ -233,7 +233,8 @@ TEST_P(StepProperties, BuoyancyIsTheWeightOfTheDiscreteVolume) {
         }
       }
       extendIntoHalo(l, liquid);
-      StepProblem problem(grid, GetParam(), 1.0);
+      StepProblem problem(grid, GetParam());
+      problem.sticking_viscosity = 1.0;
       problem.assemble(solids, bodies, liquid, kDensity, viscosity, kStep);
       FaceField<double> free_velocity;
       for (int a = 0; a < 3; ++a) free_velocity[a].assign(l.size, a == 2 ? -kGravity * kStep : 0.0);

@@ -30,7 +30,8 @@ struct SmallStep {
     extendIntoHalo(l, liquid);
     constexpr double kDensity = 1000.0, kStep = 0.01;
     const double viscosity_of_one = kDensity * grid.h * grid.h / kStep;
-    problem = std::make_unique<StepProblem>(grid, discretisation, 0.05 * viscosity_of_one);
+    problem = std::make_unique<StepProblem>(grid, discretisation);
+    problem->sticking_viscosity = 0.05 * viscosity_of_one;
     problem->assemble(solids, bodies, liquid, kDensity, number * viscosity_of_one, kStep);
   }
   std::vector<RigidBody> bodies;

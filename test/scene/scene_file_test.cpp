@@ -163,7 +163,7 @@ TEST_F(SceneFile, EachViolationNamesLineKeyValueAndExpectation) {
       {tank("  size: [1, 1.05, 1]\n  cell_width: 0.1\n"), {"along y", "1 or 1.1 m"}},
       {tank("  size: [1, 1, 0.3]\n  cell_width: 0.1\n"), {"at least 4 cells", "along z", "not 3"}},
       {tank("  size: [100, 100, 100]\n  cell_width: 0.001\n") + "liquid: {fill_level: 1}\n",
-       {"scene.yaml:3: tank.cell_width: value 0.001: expected", "1e+15 cells need about 1.7e+09 GB, this machine has"}},
+       {"scene.yaml:3: tank.cell_width: value 0.001: expected", "1e+15 cells need about 1.7e+09 GB by this solver"}},
       {tank("  size: [1, 1, 1]\n  cell_width: 0.1\n  periodic: true\n"), {"tank.periodic: value true"}},
       {tank("  size: [1, 1, 1]\n  cell_width: 0.1\n  origin: [0, -1.1e8, 0]\n"),
        {"scene.yaml:4: tank.origin: value [0, -1.1e8, 0]: expected", "at most 1e+08 m, 1e9 cells"}},
