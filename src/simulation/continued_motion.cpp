@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 #include "coupling/body_rows.h"
 #include "fluid/advection.h"
@@ -20,9 +19,6 @@ constexpr int kLayers = 3;  // the cubic that reads velocities next to the surfa
 // from step to step. Less so where the slope is that of other components: it may be as many times steeper, which a wave
 // of 12 cells length and a quarter of a cell height needs.
 constexpr double kSteeperTurn = 6.0;
-
-// A face whose centre is solid and that has less of liquid.
-constexpr double kSliver = 0.25;
 
 // Where the vorticity about the edge between a face in air and a known one tells the velocity in the air. An edge's
 // faces along b are `at_edge` and the one before it along the face's own axis.
@@ -138,35 +134,6 @@ void continueIntoAir(const Lattice& l, const SolidFractions& solids, const std::
 }
 
 }  // namespace
-
-void limitSlivers(const SolidFractions& solids, const MacGrid& grid, FaceField<double>& velocity, FaceMask& known) {
-  const Lattice& l = grid.lattice;
-  const std::vector<std::uint8_t> near_body = rowsOfBodies(l, solids.bodies);
-  for (int a = 0; a < 3; ++a) {
-    fillHalo(l, velocity[a]);
-    fillHalo(l, known[a]);
-    const auto isSliver = [&](std::ptrdiff_t f) {
-      return solids.distance[a][f] <= 0.0F && solids.fluid[a][f] > 0.0 && solids.fluid[a][f] < kSliver;
-    };
-    forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
-      if (!near_body[j + static_cast<std::size_t>(l.faceEnd(1)) * k]) return;
-      for (auto f = row; f < row + l.faceEnd(0); ++f) {
-        if (!known[a][f] || !isSliver(f)) continue;
-        double least = std::numeric_limits<double>::infinity(), most = -least;
-        for (int b = 0; b < 3; ++b) {
-          for (const auto next : {f - l.stride[b], f + l.stride[b]}) {
-            if (!known[a][next] || isSliver(next)) continue;
-            least = std::min(least, velocity[a][next]);
-            most = std::max(most, velocity[a][next]);
-          }
-        }
-        if (!(least <= most)) continue;
-        const double room = most - least + std::max(std::abs(least), std::abs(most));
-        velocity[a][f] = std::clamp(velocity[a][f], least - room, most + room);
-      }
-    });
-  }
-}
 
 void completeMotion(const SolidFractions& solids, const MacGrid& grid, const std::vector<RigidBody>& bodies, int layers,
                     bool no_slip, const std::vector<LiquidField>& fields, FaceMask& known, FaceMask& work) {

@@ -25,11 +25,6 @@ struct LiquidField {
   double steepest;  // of the slope with which it goes on into the air, per cell
 };
 
-// Faces that a solid leaves a small part of have the velocity that lets all flow through it; what is carried into
-// larger faces from there, or on into the air, would be energy from nothing. What is beyond the velocities next to it
-// by more than these and their differences is brought back to that.
-void limitSlivers(const SolidFractions& solids, const MacGrid& grid, FaceField<double>& velocity, FaceMask& known);
-
 // Gives faces inside bodies the bodies' motion where the liquid sticks to them, and spreads what is known into solids
 // and air, marking it known. work: a mask that may be written to.
 void completeMotion(const SolidFractions& solids, const MacGrid& grid, const std::vector<RigidBody>& bodies, int layers,

@@ -6,6 +6,7 @@
 #include "fluid/advection.h"
 #include "simulation/continued_motion.h"
 #include "simulation/simulation_impl.h"
+#include "simulation/velocity_limits.h"
 #include "solve/whole_fields.h"
 
 namespace monolith {
@@ -19,6 +20,8 @@ constexpr double kClosingTolerance = 1e-3;  // of a cell: a gap that closes by l
 // so much. Neither depends on the step, which would cost an order of accuracy.
 constexpr double kSteepestVelocity = 0.03;
 constexpr double kSteepestRate = 0.15;
+// By which the surface may be faster than limitCutFaces() has it, of the same speed: what is limited is no wave.
+constexpr double kSlack = 0.18;
 constexpr double kMostIntrusion = 0.5;  // of a cell, that bodies may come into walls or each other
 // After the step of an impact one of backward Euler, for the next to continue.
 constexpr int kStepsAfterImpact = 1;
@@ -190,6 +193,10 @@ void Simulation::Impl::moveLiquid(const StepWeights& w, StepReport& step) {
   std::swap(scratch.known_before, state.known);
   markResolved(system.problem(), state.known);
   limitSlivers(solids, grid, state.coupled.velocity, state.known);
+  if (hasSurface()) {
+    limitCutFaces(system.problem().liquidMass(), solids, grid, kSlack * std::sqrt(scene.gravity.norm() * grid.h),
+                  state.coupled.velocity, state.known);
+  }
   step.maximum_speed = largestSpeed(state.coupled.velocity);
   // As far as a trajectory of this step reaches, and no further than the tank.
   const int most = *std::max_element(grid.lattice.n.begin(), grid.lattice.n.end());

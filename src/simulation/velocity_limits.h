@@ -1,0 +1,23 @@
+#pragma once
+// Faces that hold little liquid have the velocity that lets all flow through them, however large: next to nothing moves
+// with it. Carried on into faces that hold more, or into the air, it would be energy from nothing: a liter of water in
+// which a cavity closes gained twice what it fell by. What such a face passes on is therefore no more than what whole
+// faces next to it tell.
+
+#include "coupling/solid_fractions.h"
+#include "fluid/mac_grid.h"
+#include "solve/staggered_operator.h"
+
+namespace monolith {
+
+// Faces of which a solid leaves a small part: beyond the velocities next to it by no more than these and their
+// differences.
+void limitSlivers(const SolidFractions& solids, const MacGrid& grid, FaceField<double>& velocity, FaceMask& known);
+
+// Faces that the surface cuts, of whose fluid part `liquid_mass` is less than all: no faster than whole faces about the
+// two cells that they lie between are in any direction (by Bernoulli's law no more comes of what turns there), or than
+// two in a row tell when their velocity goes on straight, and by `slack` (m/s) more.
+void limitCutFaces(const FaceField<double>& liquid_mass, const SolidFractions& solids, const MacGrid& grid,
+                   double slack, FaceField<double>& velocity, FaceMask& known);
+
+}  // namespace monolith
