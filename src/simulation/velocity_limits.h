@@ -16,7 +16,8 @@ void limitSlivers(const SolidFractions& solids, const MacGrid& grid, FaceField<d
 
 // Faces that the surface cuts, of whose fluid part `liquid_mass` is less than all: no faster than whole faces about the
 // two cells that they lie between are in any direction (by Bernoulli's law no more comes of what turns there), or than
-// two in a row tell when their velocity goes on straight, and by `slack` (m/s) more.
+// two in a row tell when their velocity goes on straight, and by `slack` (m/s) more. Those that are more than half full
+// may be up to twice as fast.
 void limitCutFaces(const FaceField<double>& liquid_mass, const SolidFractions& solids, const MacGrid& grid,
                    double slack, FaceField<double>& velocity, FaceMask& known);
 

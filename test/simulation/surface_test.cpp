@@ -240,7 +240,7 @@ TEST(Surface, ACavityThatClosesGainsNoEnergy) {
         ASSERT_TRUE(r.committed()) << r.message;
         most = std::max(most, r.kinetic_energy + r.potential_energy - start);
       }
-      EXPECT_LT(most, 0.03 * falls) << "shaft " << shift << " m off, step " << step << " s, scheme "
+      EXPECT_LT(most, 0.05 * falls) << "shaft " << shift << " m off, step " << step << " s, scheme "
                                     << static_cast<int>(scheme);
     }
   }
