@@ -155,7 +155,7 @@ CoupledReport CoupledSystem::solve(FaceField<double>& free_velocity, const std::
   if (report.message.empty()) {
     report = m.solve(free_twists, contacts, laws, gravity, options, state);
   } else {
-    report.status = CoupledReport::Status::kInconsistent;
+    report.status = SolveStatus::kInconsistent;
   }
   free_velocity = std::move(m.rhs.velocity);
   return report;
@@ -178,7 +178,7 @@ CoupledReport CoupledSystem::Impl::solve(const std::vector<Vector6d>& free_twist
   CoupledReport report = contacts.empty()                       ? solver->solve(rhs, options, x)
                          : coupling == CouplingName::kIterative ? solveIteratively(*solver, p, rhs, rows, options, x, r)
                                                                 : solver->solveWithContacts(rhs, rows, options, x, r);
-  const bool converged = report.status == CoupledReport::Status::kConverged;
+  const bool converged = report.status == SolveStatus::kConverged;
   if (converged) {
     state.twists = x.bodies;
     p.results(x, gravity, state.liquid, report.divergence, rhs.pressure);  // which has served

@@ -93,7 +93,7 @@ void DirectSolver::Impl::backSubstitute(const StepVector& rhs, StepVector& x) co
 CoupledReport DirectSolver::Impl::solve(const StepVector& rhs, double tolerance, StepVector& x) const {
   CoupledReport report;
   if (!failure.empty()) {
-    report.status = CoupledReport::Status::kNotConverged;
+    report.status = SolveStatus::kNotConverged;
     report.message = failure;
     return report;
   }
@@ -109,7 +109,7 @@ CoupledReport DirectSolver::Impl::solve(const StepVector& rhs, double tolerance,
       std::ostringstream text;
       text << "the direct solve reached a relative residual of " << report.residual << "; wanted " << tolerance;
       report.message = text.str();
-      report.status = CoupledReport::Status::kNotConverged;
+      report.status = SolveStatus::kNotConverged;
       return report;
     }
     correction.setZero();
@@ -120,7 +120,7 @@ CoupledReport DirectSolver::Impl::solve(const StepVector& rhs, double tolerance,
     for (std::size_t i = 0; i < x.pressure.size(); ++i) x.pressure[i] += correction.pressure[i];
     for (const int b : problem->free) x.bodies[b] += correction.bodies[b];
   }
-  report.status = CoupledReport::Status::kConverged;
+  report.status = SolveStatus::kConverged;
   return report;
 }
 
@@ -137,7 +137,7 @@ CoupledReport DirectSolver::solveWithContacts(StepVector& rhs, const ContactRows
                                               const CoupledOptions& options, StepVector& x, Eigen::VectorXd& r) {
   const StepProblem& p = *impl_->problem;
   CoupledReport report = impl_->solve(rhs, options.tolerance, x);
-  if (report.status != CoupledReport::Status::kConverged || contacts.count() == 0) return report;
+  if (report.status != SolveStatus::kConverged || contacts.count() == 0) return report;
   Eigen::VectorXd compliance;
   const Eigen::MatrixXd D = contactResponse(contacts, impl_->K, compliance);
   const Eigen::VectorXd w = contacts.J * gatherBodies(p, x.bodies) + contacts.bias;
@@ -148,11 +148,11 @@ CoupledReport DirectSolver::solveWithContacts(StepVector& rhs, const ContactRows
   second.solves += report.solves;
   second.friction_iterations = friction.iterations;
   second.contact_residual = friction.residual;
-  if (!friction.acceptable() && second.status == CoupledReport::Status::kConverged) {
+  if (!friction.acceptable() && second.status == SolveStatus::kConverged) {
     std::ostringstream text;
     text << "friction of " << contacts.count() << " contacts did not reach its fixed point: their velocities miss "
          << "Coulomb's law by " << friction.residual << " of the largest; accepted is " << kAcceptableLaw;
-    second.status = CoupledReport::Status::kNotConverged;
+    second.status = SolveStatus::kNotConverged;
     second.message = text.str();
   }
   return second;

@@ -85,7 +85,7 @@ struct FastSolver::Impl {
 
   CoupledReport notConverged(CoupledReport report, const std::string& message) {
     system.distrust();
-    report.status = CoupledReport::Status::kNotConverged;
+    report.status = SolveStatus::kNotConverged;
     report.message = message;
     return report;
   }
@@ -210,7 +210,7 @@ CoupledReport FastSolver::solveWithContacts(StepVector& rhs_fields, const Contac
   }
   system.judgeAge();
   system.finish(x, x_fields);
-  report.status = CoupledReport::Status::kConverged;
+  report.status = SolveStatus::kConverged;
   return report;
 }
 

@@ -52,7 +52,7 @@ CoupledReport solveIteratively(StepSolver& solver, const StepProblem& problem, c
     report.iterations += liquid.iterations;
     report.solves += liquid.solves;
     report.residual = liquid.residual;
-    if (liquid.status != CoupledReport::Status::kConverged) {
+    if (liquid.status != SolveStatus::kConverged) {
       report.status = liquid.status;
       report.message = liquid.message;
       return report;
@@ -67,7 +67,7 @@ CoupledReport solveIteratively(StepSolver& solver, const StepProblem& problem, c
     const double size = std::max({next.dot(K * next), push.dot(K * push), v.dot(M * v), 1e-300});
     change = std::sqrt((next - push).dot(K * (next - push)) / size);
     if (friction.acceptable() && change <= options.tolerance) {
-      report.status = CoupledReport::Status::kConverged;
+      report.status = SolveStatus::kConverged;
       return report;
     }
     const double moved = (next - push).norm();
@@ -83,7 +83,7 @@ CoupledReport solveIteratively(StepSolver& solver, const StepProblem& problem, c
   std::ostringstream text;
   text << "pressure and contact did not agree after " << kMaximumAlternations
        << " alternations: the impulses still change by " << change;
-  report.status = CoupledReport::Status::kNotConverged;
+  report.status = SolveStatus::kNotConverged;
   report.message = text.str();
   return report;
 }

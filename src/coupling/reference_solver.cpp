@@ -116,7 +116,7 @@ CoupledReport ReferenceSolver::Impl::minimise(const StepVector& rhs, const Eigen
     scatterBodies(*problem, body_forces, forced.bodies);
     report.residual = residual(forced, contact_forces, x);
     if (done.converged && report.residual <= options.tolerance) {
-      report.status = CoupledReport::Status::kConverged;
+      report.status = SolveStatus::kConverged;
       return report;
     }
     if (report.iterations >= kMaximumIterations) break;
@@ -125,13 +125,13 @@ CoupledReport ReferenceSolver::Impl::minimise(const StepVector& rhs, const Eigen
   text << "MPRGP stopped at a relative residual of " << report.residual << " after " << report.iterations
        << " iterations; wanted " << options.tolerance;
   report.message = text.str();
-  report.status = CoupledReport::Status::kNotConverged;
+  report.status = SolveStatus::kNotConverged;
   return report;
 }
 
 CoupledReport ReferenceSolver::Impl::computeResponse() {
   CoupledReport report;
-  report.status = CoupledReport::Status::kConverged;
+  report.status = SolveStatus::kConverged;
   const Eigen::Index n = problem->bodyUnknowns();
   if (response.size() > 0 || n == 0) return report;
   Eigen::MatrixXd K(n, n);
@@ -149,7 +149,7 @@ CoupledReport ReferenceSolver::Impl::computeResponse() {
         minimise(rhs, impulse, Eigen::MatrixXd(0, n), Eigen::VectorXd(0), options, unknowns, x);
     report.iterations += column.iterations;
     ++report.solves;
-    if (column.status != CoupledReport::Status::kConverged) {
+    if (column.status != SolveStatus::kConverged) {
       report.status = column.status;
       report.message = column.message;
       return report;
@@ -175,7 +175,7 @@ CoupledReport ReferenceSolver::Impl::settle(const StepVector& rhs, const Eigen::
     report.residual = part.residual;
     report.status = part.status;
     report.message = part.message;
-    if (part.status != CoupledReport::Status::kConverged) return report;
+    if (part.status != SolveStatus::kConverged) return report;
     const Eigen::VectorXd w = Jc * gatherBodies(*problem, x.bodies) + bias + compliance.cwiseProduct(r);
     Eigen::VectorXd next = r;
     const bool solved = small(w, next);
@@ -185,7 +185,7 @@ CoupledReport ReferenceSolver::Impl::settle(const StepVector& rhs, const Eigen::
     r = next;
     if (solved && change <= kLawFactor * options.tolerance * std::max(push, 1e-300)) return report;
   }
-  report.status = CoupledReport::Status::kNotConverged;
+  report.status = SolveStatus::kNotConverged;
   report.message = "contact and liquid did not agree in " + std::to_string(kMaximumCorrections) + " solves";
   return report;
 }
@@ -253,7 +253,7 @@ CoupledReport ReferenceSolver::solveWithContacts(StepVector& rhs, const ContactR
   CoupledReport report;
   if (frictional) {
     report = p.computeResponse();
-    if (report.status != CoupledReport::Status::kConverged) return report;
+    if (report.status != SolveStatus::kConverged) return report;
   }
   const auto add = [&report](const CoupledReport& part) {
     report.iterations += part.iterations;
@@ -267,7 +267,7 @@ CoupledReport ReferenceSolver::solveWithContacts(StepVector& rhs, const ContactR
   for (int round = 0; round < kMaximumAlternations; ++round) {
     const Eigen::VectorXd before = r;
     add(p.minimise(rhs, forces + Jt.transpose() * r.tail(2 * m), Jn, contacts.bias.head(m), options, unknowns, x));
-    if (report.status != CoupledReport::Status::kConverged) return report;
+    if (report.status != SolveStatus::kConverged) return report;
     r.head(m) = leastNorm(contacts, p.inverse_inertia, unknowns.tail(m));
     if (!frictional) return report;
     ++report.friction_iterations;
@@ -275,7 +275,7 @@ CoupledReport ReferenceSolver::solveWithContacts(StepVector& rhs, const ContactR
     Eigen::VectorXd liquid = unknowns.head(n), f = r.tail(2 * m);
     add(p.minimiseFriction(rhs, forces + Jn.transpose() * r.head(m), contacts,
                            contacts.friction.cwiseProduct(r.head(m)), options, liquid, f, x));
-    if (report.status != CoupledReport::Status::kConverged) return report;
+    if (report.status != SolveStatus::kConverged) return report;
     unknowns.head(n) = liquid;
     r.tail(2 * m) = f;
     const Eigen::VectorXd push = contacts.J.transpose() * r;

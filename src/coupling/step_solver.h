@@ -18,8 +18,7 @@ struct CoupledOptions {
 };
 
 struct CoupledReport {
-  using Status = SolveStatus;
-  Status status = Status::kNotRun;
+  SolveStatus status = SolveStatus::kNotRun;
   std::string message;
   int iterations = 0;             // of the linear solver; `direct`: none
   int solves = 0;                 // with the whole liquid

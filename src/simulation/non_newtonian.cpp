@@ -74,14 +74,14 @@ CoupledReport solveNonNewtonian(CoupledSystem& system, const ViscosityLaw& law, 
     total.residual = solved.residual;
     total.contact_residual = solved.contact_residual;
     total.divergence = solved.divergence;
-    if (solved.status == CoupledReport::Status::kNotConverged && extrapolated) {
+    if (solved.status == SolveStatus::kNotConverged && extrapolated) {
       // The acceleration has led to viscosities that are too hard to solve for: on from those of the last solution.
       now = next;
       anderson.forget();
       extrapolated = false;
       continue;
     }
-    if (solved.status != CoupledReport::Status::kConverged) return total;
+    if (solved.status != SolveStatus::kConverged) return total;
 
     system.evaluateViscosity(law, state, next);
     rheology.residual = system.viscousChange(state, next);
@@ -101,7 +101,7 @@ CoupledReport solveNonNewtonian(CoupledSystem& system, const ViscosityLaw& law, 
   std::ostringstream text;
   text << "the viscosity did not settle in " << maximum_iterations << " iterations: relative residual "
        << rheology.residual << ", wanted " << 0.5 * tolerance;
-  total.status = CoupledReport::Status::kNotConverged;
+  total.status = SolveStatus::kNotConverged;
   total.message = text.str();
   return total;
 }

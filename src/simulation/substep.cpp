@@ -269,7 +269,7 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
   step.residual = std::max(step.residual, solved.residual);
   step.contact_residual = std::max(step.contact_residual, solved.contact_residual);
   step.divergence = std::max(step.divergence, solved.divergence);
-  if (solved.status != CoupledReport::Status::kConverged) {
+  if (solved.status != SolveStatus::kConverged) {
     step.status = solved.status;
     step.message = solved.message;
     return false;

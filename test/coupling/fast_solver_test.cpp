@@ -72,7 +72,7 @@ struct SphereStep {
     CoupledOptions options;
     options.tolerance = tolerance;
     const CoupledReport report = fast.solve(rhs, options, x);
-    EXPECT_EQ(report.status, CoupledReport::Status::kConverged) << report.message;
+    EXPECT_EQ(report.status, SolveStatus::kConverged) << report.message;
     return report;
   }
 };

@@ -541,11 +541,11 @@ TEST(FractionStep, SolversAgreeAndMomentumBalances) {
     DirectSolver direct;
     direct.prepare(p);
     const CoupledReport exact = direct.solve(rhs, options, x);
-    ASSERT_EQ(exact.status, CoupledReport::Status::kConverged) << exact.message;
+    ASSERT_EQ(exact.status, SolveStatus::kConverged) << exact.message;
     FastSolver fast;
     fast.prepare(p);
     const CoupledReport report = fast.solve(rhs, options, y);
-    ASSERT_EQ(report.status, CoupledReport::Status::kConverged) << report.message;
+    ASSERT_EQ(report.status, SolveStatus::kConverged) << report.message;
     double difference = 0.0, size = 0.0;
     for (int a = 0; a < 3; ++a) {
       for (std::size_t f = 0; f < l.size; ++f) {

@@ -176,7 +176,7 @@ TEST(RigidModes, AFallingBlobIsSolvedWhateverItsViscosity) {
   }
   for (const double number : {100.0, 2500.0}) {
     const CoupledReport report = DriftScene(number, 0.4, 1, true).fall(1e-4);
-    EXPECT_EQ(report.status, CoupledReport::Status::kConverged) << report.message;
+    EXPECT_EQ(report.status, SolveStatus::kConverged) << report.message;
     EXPECT_LT(report.iterations, 50) << number;
   }
 }

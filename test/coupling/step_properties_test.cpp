@@ -180,7 +180,7 @@ TEST_P(StepProperties, EnergyNeverGrowsAndContactsObeyTheirLaw) {
     StepVector x = step.start();
     Eigen::VectorXd r;
     const CoupledReport report = solver->solveWithContacts(step.rhs, step.rows, options, x, r);
-    ASSERT_EQ(report.status, CoupledReport::Status::kConverged) << report.message << ", number " << step.number;
+    ASSERT_EQ(report.status, SolveStatus::kConverged) << report.message << ", number " << step.number;
     FaceField<double> unknowns = step.free_velocity;
     step.problem.toUnknowns(unknowns);
     const double before = step.energy(unknowns, step.free_twists);
@@ -247,7 +247,7 @@ TEST_P(StepProperties, BuoyancyIsTheWeightOfTheDiscreteVolume) {
       DirectSolver direct;
       direct.prepare(problem);
       const CoupledReport report = direct.solve(rhs, options, x);
-      ASSERT_EQ(report.status, CoupledReport::Status::kConverged) << report.message;
+      ASSERT_EQ(report.status, SolveStatus::kConverged) << report.message;
       std::vector<Wrench> wrenches;
       std::vector<double> work;
       double largest_divergence = 0.0;
@@ -280,7 +280,7 @@ TEST(StepMomentum, OfLiquidAndBodiesBalances) {
     StepVector x = step.start();
     Eigen::VectorXd r;
     const CoupledReport report = direct.solveWithContacts(step.rhs, step.rows, options, x, r);
-    ASSERT_EQ(report.status, CoupledReport::Status::kConverged) << report.message;
+    ASSERT_EQ(report.status, SolveStatus::kConverged) << report.message;
     // The liquid that sticks to a body had the body's velocity before: so does its inertia.
     const Eigen::Vector3d before = step.momentum(step.free_velocity, step.free_twists);
     const Eigen::Vector3d change = step.momentum(x.velocity, x.bodies) - before;
@@ -303,7 +303,7 @@ TEST(StepMomentum, GoesToWhatIsHeldFast) {
     options.tolerance = 1e-9;
     StepVector x = step.start();
     const CoupledReport report = direct.solve(step.rhs, options, x);
-    ASSERT_EQ(report.status, CoupledReport::Status::kConverged) << report.message;
+    ASSERT_EQ(report.status, SolveStatus::kConverged) << report.message;
     const Eigen::Vector3d change =
         step.momentum(x.velocity, x.bodies) - step.momentum(step.free_velocity, step.free_twists);
     std::vector<Wrench> liquid;

@@ -89,7 +89,7 @@ Answer answer(StackStep& step, StepSolver& solver, CouplingName coupling, double
   out.report = coupling == CouplingName::kUnified
                    ? solver.solveWithContacts(step.rhs, step.rows, options, out.x, out.r)
                    : solveIteratively(solver, step.problem, step.rhs, step.rows, options, out.x, out.r);
-  EXPECT_EQ(out.report.status, CoupledReport::Status::kConverged) << out.report.message;
+  EXPECT_EQ(out.report.status, SolveStatus::kConverged) << out.report.message;
   return out;
 }
 

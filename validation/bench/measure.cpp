@@ -119,14 +119,14 @@ void search(FirstStep& step, const std::vector<Vector6d>& exact, double goal, do
     const CoupledReport report = step.solve(tolerance);
     const double ms = 1e3 * (seconds() - start);
     const double error = accelerationError(step, exact);
-    const bool reached = report.status == CoupledReport::Status::kConverged && (fixed > 0.0 || error <= goal);
+    const bool reached = report.status == SolveStatus::kConverged && (fixed > 0.0 || error <= goal);
     if (reached) {
       out.good = true;
       out.tolerance = tolerance;
       out.error = error;
       out.solve_ms = ms;
       out.iterations = report.iterations;
-    } else if (report.status != CoupledReport::Status::kConverged) {
+    } else if (report.status != SolveStatus::kConverged) {
       copyMessage(report.message, out.message);
     }
     return reached;
@@ -193,7 +193,7 @@ Accuracy measureAccuracy(const Case& wanted, double error, double tolerance) {
   FirstStep truth(tankScene(tight, kTight));
   truth.assemble();
   const CoupledReport report = truth.solve(kTight);
-  if (report.status != CoupledReport::Status::kConverged) {
+  if (report.status != SolveStatus::kConverged) {
     copyMessage("the solve that counts as exact: " + report.message, out.message);
     return out;
   }
