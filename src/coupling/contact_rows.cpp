@@ -50,15 +50,16 @@ ContactRows buildContactRows(const StepProblem& problem, const std::vector<Conta
     double approach = 0.0;  // gap rate at the start of the step
     for (const auto& [body, sign] : {std::pair(contact.body_a, 1.0), std::pair(contact.body_b, -1.0)}) {
       if (body == Contact::kWall) continue;
+      const Eigen::Vector3d point = sign > 0.0 ? contact.point : contact.pointOnB();
       const RigidBody& rigid = (*problem.bodies)[body];
-      approach += sign * rigid.velocityAt(contact.point).dot(contact.normal);
+      approach += sign * rigid.velocityAt(point).dot(contact.normal);
       if (rigid.motion == BodyMotion::kPrescribed) {
         for (const Eigen::Index i : row) out.softness[i] = kSoftness;
       }
       for (int d = 0; d < 3; ++d) {
         Vector6d j;
         j.head<3>() = sign * axis[d];
-        j.tail<3>() = sign * (contact.point - rigid.p_WBcm).cross(axis[d]);
+        j.tail<3>() = sign * (point - rigid.p_WBcm).cross(axis[d]);
         const int place = problem.free_index[body];
         if (place < 0) {
           out.bias[row[d]] += j.dot(twists[body]);
@@ -120,8 +121,9 @@ void distributeImpulses(const StepProblem& problem, const ContactRows& rows, con
     const Eigen::Vector3d force = at.normal * contacts[c].normal + at.friction;
     for (const auto& [body, sign] : {std::pair(contacts[c].body_a, 1.0), std::pair(contacts[c].body_b, -1.0)}) {
       if (body == Contact::kWall) continue;
+      const Eigen::Vector3d point = sign > 0.0 ? contacts[c].point : contacts[c].pointOnB();
       wrenches[body].force += sign * force;
-      wrenches[body].torque += sign * (contacts[c].point - (*problem.bodies)[body].p_WBcm).cross(force);
+      wrenches[body].torque += sign * (point - (*problem.bodies)[body].p_WBcm).cross(force);
     }
     forces.push_back(at);
   }

@@ -19,7 +19,13 @@ namespace {
 
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
-using PartPair = std::pair<int, int>;
+
+// Indices of parts, and what shifts the second to that of its periodic images which is near the first.
+struct PartPair {
+  int a = 0, b = 0;
+  std::array<int, 3> periods{};
+  Vector3d shift = Vector3d::Zero();  // m
+};
 
 struct Part {
   int body;
@@ -30,28 +36,45 @@ struct Part {
   Isometry3d X_WG = Isometry3d::Identity();
 
   bool isMesh() const { return surface != nullptr; }
-  PlacedMesh mesh() const { return {surface.get(), X_WG}; }
-  ConvexShape convex() const { return placeConvex(shape, X_WG); }
 };
+
+// A part, or an image of it.
+struct PlacedPart {
+  const Part* part;
+  Isometry3d X_WG;
+
+  bool isMesh() const { return part->isMesh(); }
+  PlacedMesh mesh() const { return {part->surface.get(), X_WG}; }
+  ConvexShape convex() const { return placeConvex(part->shape, X_WG); }
+};
+
+PlacedPart place(const Part& part, const Vector3d& shift) {
+  PlacedPart placed{&part, part.X_WG};
+  placed.X_WG.translation() += shift;
+  return placed;
+}
 
 bool collectPair(fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* pairs) {
   const auto* part_a = static_cast<const int*>(a->getUserData());
   const auto* part_b = static_cast<const int*>(b->getUserData());
-  static_cast<std::vector<PartPair>*>(pairs)->push_back(std::minmax(*part_a, *part_b));
+  PartPair pair;
+  std::tie(pair.a, pair.b) = std::minmax(*part_a, *part_b);
+  static_cast<std::vector<PartPair>*>(pairs)->push_back(pair);
   return false;  // go on
 }
 
 // A guard for what the samples of a mesh miss: FCL's closest pair, if nothing found comes near it.
-void appendClosestPair(const Part& a, const Part& b, double margin, std::vector<Contact>& contacts) {
+void appendClosestPair(const PlacedPart& a, const PlacedPart& b, double margin, std::vector<Contact>& contacts) {
   double most = margin;
   for (const Contact& contact : contacts) most = std::min(most, contact.gap - 0.05 * margin);
   if (most <= 0.0) return;
-  const ClosestPair pair = findClosestPair(*a.object, *b.object, most);
+  const auto geometry = [](const PlacedPart& placed) { return placed.part->object->collisionGeometry(); };
+  const ClosestPair pair = findClosestPair(*geometry(a), a.X_WG, *geometry(b), b.X_WG, most);
   if (pair.distance <= 0.0 || pair.distance >= most) return;
   const Vector3d offset = pair.on_a - pair.on_b;
   const double length = offset.norm();
   // Not taken on trust: iterative distances can end with points off the surfaces.
-  const auto onSurface = [&](const Part& part, const Vector3d& point) {
+  const auto onSurface = [&](const PlacedPart& part, const Vector3d& point) {
     const DistanceSample sample = part.isMesh() ? part.mesh().sample(point) : sampleDistance(part.convex(), point);
     return std::abs(sample.distance) <= 1e-3 * margin;
   };
@@ -59,7 +82,7 @@ void appendClosestPair(const Part& a, const Part& b, double margin, std::vector<
   contacts.push_back({0, 0, 0.5 * (pair.on_a + pair.on_b), offset / length, length});
 }
 
-void appendPartContacts(const Part& a, const Part& b, double margin, std::vector<Contact>& contacts) {
+void appendPartContacts(const PlacedPart& a, const PlacedPart& b, double margin, std::vector<Contact>& contacts) {
   if (!a.isMesh() && !b.isMesh()) {
     appendConvexContacts(a.convex(), b.convex(), margin, contacts);
     return;
@@ -76,7 +99,7 @@ void appendPartContacts(const Part& a, const Part& b, double margin, std::vector
   } else {
     appendMeshContacts(a.mesh(), b.convex(), margin, found);
   }
-  if (b.shape.kind != Shape::Kind::kSphere) appendClosestPair(a, b, margin, found);
+  if (b.part->shape.kind != Shape::Kind::kSphere) appendClosestPair(a, b, margin, found);
   contacts.insert(contacts.end(), found.begin(), found.end());
 }
 
@@ -107,17 +130,45 @@ struct ContactDetector::Impl {
   std::vector<PartPair> nearPairs() {
     std::vector<PartPair> pairs;
     manager.collide(&pairs, &collectPair);
+    appendImages(pairs);
     const auto irrelevant = [&](const PartPair& pair) {
-      const Part &a = parts[pair.first], &b = parts[pair.second];
+      const Part &a = parts[pair.a], &b = parts[pair.b];
       return a.body == b.body || !(a.free || b.free);
     };
     pairs.erase(std::remove_if(pairs.begin(), pairs.end(), irrelevant), pairs.end());
     // The tree's order depends on its history. Bodies first: all of one pair of bodies together.
-    std::sort(pairs.begin(), pairs.end(), [&](const PartPair& p, const PartPair& q) {
-      return std::make_tuple(parts[p.first].body, parts[p.second].body, p) <
-             std::make_tuple(parts[q.first].body, parts[q.second].body, q);
-    });
+    const auto key = [&](const PartPair& p) {
+      return std::make_tuple(parts[p.a].body, parts[p.b].body, p.periods, p.a, p.b);
+    };
+    std::sort(pairs.begin(), pairs.end(), [&](const PartPair& p, const PartPair& q) { return key(p) < key(q); });
     return pairs;
+  }
+
+  // Pairs of which one is in another image than the other. One of the two then reaches out of the tank.
+  void appendImages(std::vector<PartPair>& pairs) const {
+    if (!walls.periodic[0] && !walls.periodic[1] && !walls.periodic[2]) return;
+    std::vector<Eigen::AlignedBox3d> boxes;
+    std::vector<char> crosses;
+    for (const Part& part : parts) {
+      const fcl::AABBd& box = part.object->getAABB();
+      boxes.emplace_back(Vector3d(box.min_), Vector3d(box.max_));
+      bool out = false;
+      for (int axis = 0; axis < 3; ++axis) {
+        out = out || (walls.periodic[axis] && !(box.min_[axis] >= walls.inside.min()[axis] &&
+                                                box.max_[axis] <= walls.inside.max()[axis]));
+      }
+      crosses.push_back(out ? 1 : 0);
+    }
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      if (!crosses[i]) continue;
+      for (std::size_t j = 0; j < parts.size(); ++j) {
+        if (j == i || (crosses[j] && j < i)) continue;
+        const std::size_t a = std::min(i, j), b = std::max(i, j);
+        walls.forEachImage(boxes[a], boxes[b], [&](const Vector3d& shift, const std::array<int, 3>& periods) {
+          pairs.push_back({static_cast<int>(a), static_cast<int>(b), periods, shift});
+        });
+      }
+    }
   }
 };
 
@@ -167,11 +218,13 @@ std::vector<Contact> ContactDetector::detect(const std::vector<RigidBody>& bodie
       appendContactsWithWalls(parts[job - pairs.size()], impl_->walls, margin, found[job]);
       return;
     }
-    const Part &a = parts[pairs[job].first], &b = parts[pairs[job].second];
-    appendPartContacts(a, b, margin, found[job]);
+    const PartPair& pair = pairs[job];
+    const Part &a = parts[pair.a], &b = parts[pair.b];
+    appendPartContacts(place(a, Vector3d::Zero()), place(b, pair.shift), margin, found[job]);
     for (Contact& contact : found[job]) {
       contact.body_a = a.body;
       contact.body_b = b.body;
+      contact.shift_b = pair.shift;
     }
   };
   std::vector<std::exception_ptr> thrown(found.size());
@@ -189,12 +242,12 @@ std::vector<Contact> ContactDetector::detect(const std::vector<RigidBody>& bodie
   std::vector<Contact> contacts;
   std::vector<Contact> of_pair;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const Part &a = parts[pairs[i].first], &b = parts[pairs[i].second];
+    const Part &a = parts[pairs[i].a], &b = parts[pairs[i].b];
     of_pair.insert(of_pair.end(), found[i].begin(), found[i].end());
     const bool last =
-        i + 1 == pairs.size() || parts[pairs[i + 1].first].body != a.body || parts[pairs[i + 1].second].body != b.body;
+        i + 1 == pairs.size() || parts[pairs[i + 1].a].body != a.body || parts[pairs[i + 1].b].body != b.body;
     if (!last) continue;
-    // Shapes of one body that meet flush have corners in the same place.
+    // Shapes of one body that meet flush have corners in the same place, and images of one that spans the tank.
     mergeCoincident(of_pair, 1e-3 * margin);
     contacts.insert(contacts.end(), of_pair.begin(), of_pair.end());
     of_pair.clear();

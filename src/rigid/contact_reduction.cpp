@@ -18,9 +18,11 @@ void mergeCoincident(std::vector<Contact>& contacts, double distance) {
   std::vector<Contact> kept;
   for (const Contact& contact : contacts) {
     const auto same = std::find_if(kept.begin(), kept.end(), [&](const Contact& other) {
+      // On either: what spans the periods of the tank is touched by all images of the other in the same way.
+      const double at_a = (other.point - contact.point).squaredNorm();
+      const double at_b = (other.pointOnB() - contact.pointOnB()).squaredNorm();
       return other.body_a == contact.body_a && other.body_b == contact.body_b &&
-             (other.point - contact.point).squaredNorm() <= distance * distance &&
-             other.normal.dot(contact.normal) > 0.9;
+             std::min(at_a, at_b) <= distance * distance && other.normal.dot(contact.normal) > 0.9;
     });
     if (same == kept.end()) {
       kept.push_back(contact);

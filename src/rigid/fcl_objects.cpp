@@ -27,11 +27,12 @@ std::shared_ptr<fcl::CollisionGeometryd> makeCollisionGeometry(const Shape& shap
   throw std::invalid_argument("makeCollisionGeometry: unknown kind of shape " + shape.name);
 }
 
-ClosestPair findClosestPair(const fcl::CollisionObjectd& a, const fcl::CollisionObjectd& b, double most) {
+ClosestPair findClosestPair(const fcl::CollisionGeometryd& a, const Eigen::Isometry3d& X_WA,
+                            const fcl::CollisionGeometryd& b, const Eigen::Isometry3d& X_WB, double most) {
   fcl::DistanceRequestd request;
   request.enable_nearest_points = true;
   fcl::DistanceResultd result(most);
-  const double distance = fcl::distance(&a, &b, request, result);
+  const double distance = fcl::distance(&a, X_WA, &b, X_WB, request, result);
   return {distance > 0.0 ? distance : -1.0, result.nearest_points[0], result.nearest_points[1]};
 }
 

@@ -35,8 +35,9 @@ struct ClosestPair {
   Eigen::Vector3d on_a, on_b;
 };
 
-// The closest pair of points if it is closer than `most` (m), which cuts the search short; else its distance is `most`,
-// and the points mean nothing.
-ClosestPair findClosestPair(const fcl::CollisionObjectd& a, const fcl::CollisionObjectd& b, double most);
+// The closest pair of points of two shapes if it is closer than `most` (m), which cuts the search short; else its
+// distance is `most`, and the points mean nothing.
+ClosestPair findClosestPair(const fcl::CollisionGeometryd& a, const Eigen::Isometry3d& X_WA,
+                            const fcl::CollisionGeometryd& b, const Eigen::Isometry3d& X_WB, double most);
 
 }  // namespace monolith

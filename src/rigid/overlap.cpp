@@ -100,9 +100,10 @@ std::string describeOverlaps(const std::vector<RigidBody>& bodies, const TankWal
   const auto counts = [&](std::size_t body) { return only < 0 || body == static_cast<std::size_t>(only); };
   std::map<const TriangleMesh*, std::shared_ptr<const MeshSurface>> surfaces;
   std::vector<std::vector<Solid>> solids(bodies.size());
+  std::vector<Eigen::AlignedBox3d> boxes(bodies.size());
   std::string lines;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    Eigen::AlignedBox3d box;
+    Eigen::AlignedBox3d& box = boxes[i];
     for (const Shape& shape : bodies[i].shapes) {
       Solid solid{shape, bodies[i].pose() * shape.X_BG, nullptr};
       if (shape.kind == Shape::Kind::kMesh) {
@@ -122,12 +123,22 @@ std::string describeOverlaps(const std::vector<RigidBody>& bodies, const TankWal
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     for (std::size_t j = i + 1; j < bodies.size(); ++j) {
       if (!counts(i) && !counts(j)) continue;
-      double deepest = 0.0;
-      for (const Solid& a : solids[i])
-        for (const Solid& b : solids[j]) deepest = std::max(deepest, depth(a, b));
-      if (deepest > tolerance) {
-        lines += "bodies '" + bodies[i].name + "' and '" + bodies[j].name + "' overlap by " + metres(deepest) + "\n";
-      }
+      const auto deepest = [&](const Vector3d& shift) {
+        double most = 0.0;
+        for (Solid b : solids[j]) {
+          b.X_WG.translation() += shift;
+          for (const Solid& a : solids[i]) most = std::max(most, depth(a, b));
+        }
+        return most;
+      };
+      const double inside = deepest(Vector3d::Zero());
+      double across = 0.0;
+      walls.forEachImage(boxes[i], boxes[j], [&](const Vector3d& shift, const std::array<int, 3>&) {
+        across = std::max(across, deepest(shift));
+      });
+      if (!(std::max(inside, across) > tolerance)) continue;
+      lines += "bodies '" + bodies[i].name + "' and '" + bodies[j].name + "' overlap by " +
+               metres(std::max(inside, across)) + (across > inside ? ", across the periodic boundary" : "") + "\n";
     }
   }
   return lines;

@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 // Of the gap, m/s.
 double gapRate(const std::vector<RigidBody>& bodies, const Contact& c) {
   double rate = bodies[c.body_a].velocityAt(c.point).dot(c.normal);
-  if (c.body_b != Contact::kWall) rate -= bodies[c.body_b].velocityAt(c.point).dot(c.normal);
+  if (c.body_b != Contact::kWall) rate -= bodies[c.body_b].velocityAt(c.pointOnB()).dot(c.normal);
   return rate;
 }
 
@@ -232,7 +232,7 @@ std::string describeIntrusion(const BodyPlan& plan, const std::vector<Contact>& 
   };
   for (const Contact& c : contacts) {
     if (c.body_b == Contact::kWall) continue;
-    const double closes = -dt * (velocity(c.body_a, c.point) - velocity(c.body_b, c.point)).dot(c.normal);
+    const double closes = -dt * (velocity(c.body_a, c.point) - velocity(c.body_b, c.pointOnB())).dot(c.normal);
     const double depth = closes - c.gap;
     if (depth <= allowed || closes <= std::max(pressed[c.body_a], pressed[c.body_b])) continue;
     return intrusion("bodies '" + after[c.body_a].name + "' and '" + after[c.body_b].name + "' would overlap", depth,

@@ -90,6 +90,7 @@ struct Simulation::Impl {
   CoupledReport solveWithLiquid(const StepWeights& w, const std::vector<Contact>& contacts, StepReport& report);
   void takeMeans(const StepWeights& w, const std::vector<Wrench>& liquid_before);
   void moveLiquid(const StepWeights& w, StepReport& report);
+  void enterImages();
   void prepareGeometry();
   void measureLiquidMotion(StepReport& report);
   void measureState(StepReport& report) const;

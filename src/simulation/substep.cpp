@@ -251,6 +251,22 @@ void Simulation::Impl::moveLiquid(const StepWeights& w, StepReport& step) {
   step.volume_correction += state.surface[0].correctVolume(target_volume, solids.cell_fluid, solids.fluid);
 }
 
+// Bodies that left the tank along a periodic axis are put to their images in it. The forces of contacts go with body_a,
+// for the next ones to be found where they are.
+void Simulation::Impl::enterImages() {
+  std::vector<Eigen::Vector3d> shift;
+  for (RigidBody& body : state.bodies) {
+    const Eigen::Vector3d image = walls.imageInside(body.p_WBcm);
+    shift.emplace_back(image - body.p_WBcm);
+    body.p_WBcm = image;
+  }
+  for (ContactForce& force : state.coupled.contact_forces) {
+    Contact& contact = force.contact;
+    contact.point += shift[contact.body_a];
+    if (contact.body_b != Contact::kWall) contact.shift_b += shift[contact.body_a] - shift[contact.body_b];
+  }
+}
+
 bool Simulation::Impl::substep(double dt, StepReport& step) {
   const StepWeights w = weights(dt);
   std::vector<Contact> contacts;
@@ -306,10 +322,8 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
 
   takeMeans(w, scratch.other.liquid);
   state.bodies = std::move(moved);
-  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
-    state.stuck_twists[b] = state.bodies[b].twist;
-    state.bodies[b].p_WBcm = walls.imageInside(state.bodies[b].p_WBcm);
-  }
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) state.stuck_twists[b] = state.bodies[b].twist;
+  enterImages();
   const bool impact = std::find(closing.begin(), closing.end(), 1) != closing.end();
   state.euler_steps = impact ? kStepsAfterImpact : std::max(0, state.euler_steps - 1);
   state.last_dt = dt;

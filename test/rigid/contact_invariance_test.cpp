@@ -1,4 +1,5 @@
-// Contacts must not depend on who is called a, on where the world's origin is, or on what was detected before.
+// Contacts must not depend on who is called a, on where the world's origin is, on which of its periodic images a body
+// is given by, or on what was detected before.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -78,6 +79,65 @@ TEST(ContactInvariance, CommonRigidMotion) {
         const double tolerance = a.kind == Shape::Kind::kCylinder || b.kind == Shape::Kind::kCylinder ? 1e-6 : 1e-8;
         expectSame(test::detectPair(a, X_A, b, X_B, 0.02), moved, tolerance);
       });
+}
+
+// Wherever the boundary cuts them: each body with its own lever arms.
+TEST(ContactInvariance, PeriodicImages) {
+  TankWalls walls;
+  walls.inside = Eigen::AlignedBox3d(Vector3d::Zero(), Vector3d(3.0, 4.0, 5.0));
+  for (bool& periodic : walls.periodic) periodic = true;
+  int across = 0;
+  const auto atImages = [&](const Isometry3d& X, const Vector3d& shift) {
+    Isometry3d image = X;
+    image.translation() = walls.imageInside(X.translation() + shift);
+    return image;
+  };
+  forRandomPairs(
+      26, [&](test::Random& random, const Shape& a, const Isometry3d& X_A, const Shape& b, const Isometry3d& X_B) {
+        const std::vector<Contact> plain = test::detectPair(a, X_A, b, X_B, 0.02);
+        if (isAmbiguous(a, b, plain)) return;
+        const Vector3d shift = random.inCube(10.0);
+        const Isometry3d image_A = atImages(X_A, shift), image_B = atImages(X_B, shift);
+        const std::vector<RigidBody> bodies{test::makeBody("a", {a}, image_A), test::makeBody("b", {b}, image_B)};
+        std::vector<Contact> periodic = test::detect(bodies, 0.02, walls);
+        for (Contact& contact : periodic) {
+          across += contact.shift_b.isZero() ? 0 : 1;
+          const Vector3d at_b = contact.pointOnB() - image_B.translation() + X_B.translation();
+          contact.point += X_A.translation() - image_A.translation();
+          EXPECT_LT((contact.point - at_b).norm(), 1e-12);
+        }
+        const double tolerance = a.kind == Shape::Kind::kCylinder || b.kind == Shape::Kind::kCylinder ? 1e-6 : 1e-8;
+        expectSame(plain, periodic, tolerance);
+      });
+  EXPECT_GT(across, 50);
+}
+
+// Two bodies that touch on both sides of the tank do so there as well.
+TEST(ContactDetector, FindsAPairInSeveralImages) {
+  TankWalls walls;
+  walls.inside = Eigen::AlignedBox3d(Vector3d::Zero(), Vector3d::Ones());
+  walls.periodic[0] = true;
+  const auto at = [](double x) { return pose(Vector3d(x, 0.5, 0.5)); };
+  std::vector<RigidBody> bodies{test::makeBody("a", {test::boxShape(Vector3d(0.5, 0.2, 0.2))}, at(0.25)),
+                                test::makeBody("b", {test::boxShape(Vector3d(0.5, 0.2, 0.2))}, at(0.75))};
+  std::vector<Contact> contacts = test::detect(bodies, 0.01, walls);
+  ASSERT_EQ(contacts.size(), 8u);
+  const auto isAcross = [](const Contact& contact) { return contact.shift_b == Vector3d(-1.0, 0.0, 0.0); };
+  EXPECT_EQ(std::count_if(contacts.begin(), contacts.end(), isAcross), 4);
+  for (const Contact& contact : contacts) {
+    EXPECT_NEAR(contact.gap, 0.0, 1e-12);
+    EXPECT_NEAR(contact.normal[0], isAcross(contact) ? 1.0 : -1.0, 1e-12);
+    EXPECT_NEAR(contact.point[0], isAcross(contact) ? 0.0 : 0.5, 1e-12);
+  }
+  // What is not free gives none; nor does a body with itself.
+  for (RigidBody& body : bodies) body.motion = BodyMotion::kFixed;
+  EXPECT_TRUE(test::detect(bodies, 0.01, walls).empty());
+  bodies = {test::makeBody("a", {test::boxShape(Vector3d(1.0, 0.2, 0.2))}, at(0.5))};
+  EXPECT_TRUE(test::detect(bodies, 0.01, walls).empty());
+  // On a plate of several periods there is no contact twice.
+  bodies = {test::makeBody("plate", {test::boxShape(Vector3d(3.0, 1.0, 0.2))}, at(0.5), BodyMotion::kFixed),
+            test::makeBody("cube", {test::boxShape(Vector3d::Constant(0.2))}, pose(Vector3d(0.4, 0.5, 0.7)))};
+  EXPECT_EQ(test::detect(bodies, 0.01, walls).size(), 4u);
 }
 
 // The point lies half-way between the surfaces: gap/2 from each, measured along the normal.

@@ -106,6 +106,20 @@ TEST(Overlaps, NamesBodiesAndDepth) {
   EXPECT_EQ(lines, "bodies 'left' and 'right' overlap by 0.02 m\n");
 }
 
+TEST(Overlaps, AcrossThePeriodicBoundary) {
+  const Shape box = test::boxShape(Vector3d::Constant(0.2));
+  TankWalls walls = unitTank();
+  const std::vector<RigidBody> bodies{makeBody("left", {box}, pose(Vector3d(0.05, 0.98, 0.5))),
+                                      makeBody("right", {box}, pose(Vector3d(0.9, 0.01, 0.5)))};
+  walls.periodic[0] = true;
+  EXPECT_EQ(describeOverlaps(bodies, walls, 1e-3).find("overlap"), std::string::npos);
+  walls.periodic[1] = true;
+  const std::string expected = "bodies 'left' and 'right' overlap by 0.05 m, across the periodic boundary\n";
+  EXPECT_EQ(describeOverlaps(bodies, walls, 1e-3), expected);
+  EXPECT_EQ(describeOverlaps(bodies, walls, 1e-3, 1), expected);
+  EXPECT_EQ(describeOverlaps(bodies, walls, 0.06), "");
+}
+
 TEST(Overlaps, FindsFullContainment) {
   const Shape small[] = {test::sphereShape(0.02), test::boxShape(Vector3d::Constant(0.03)),
                          test::cylinderShape(0.02, 0.03), test::boxMesh(Vector3d::Constant(0.03))};

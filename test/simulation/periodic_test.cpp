@@ -1,9 +1,12 @@
-// Bodies and periodic boundaries: a body that crosses one, one that spans the tank, one whose surface runs in place.
+// Bodies and periodic boundaries: a body that crosses one, bodies that touch across one, one that spans the tank, one
+// whose surface runs in place.
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <map>
+#include <stdexcept>
+#include <string>
 
 #include "scene/solid_body.h"
 #include "simulation/simulation.h"
@@ -58,6 +61,100 @@ TEST(Periodic, ABodyThatCrossesTheBoundaryFeelsTheSame) {
     const Wrench across = wrenchOn(scene);
     EXPECT_LT((across.force - inside.force).norm(), 1e-4 * inside.force.norm()) << shift.transpose();
     EXPECT_LT((across.torque - inside.torque).norm(), 1e-4 * inside.torque.norm()) << shift.transpose();
+  }
+}
+
+// A cube that drifts over the boundary against a bar on the other side.
+TEST(Periodic, BodiesTouchAcrossTheBoundary) {
+  for (const double speed : {0.1, 0.5}) {
+    Scene scene = periodicScene();
+    scene.tank.size = {0.4, 0.2, 0.2};
+    scene.tank.cell_width = 0.02;
+    scene.liquid.fill_level = 0.0;
+    scene.time_step = 0.02;
+    scene.bodies = {boxBody("bar", {0.2, 0.06, 0.06}, 1000.0, {0.1, 0.1, 0.1}),
+                    boxBody("cube", {0.06, 0.06, 0.06}, 1000.0, {0.32, 0.1, 0.1})};
+    scene.bodies[1].velocity = {speed, 0.0, 0.0};
+    Simulation simulation(scene);
+    const double bar = 0.72, cube = 0.216;  // kg
+    const double energy = 0.5 * cube * speed * speed, together = speed * cube / (bar + cube);
+    for (int i = 0; i < 100; ++i) {
+      const StepReport report = simulation.step();
+      ASSERT_TRUE(report.committed()) << report.message;
+      EXPECT_LT(report.kinetic_energy, (1.0 + 1e-9) * energy);
+      EXPECT_LT(report.penetration, 1e-4);
+      const auto bodies = simulation.bodyStates();
+      EXPECT_NEAR(bar * bodies[0].velocity[0] + cube * bodies[1].velocity[0], cube * speed, 1e-7 * cube * speed);
+    }
+    for (const BodyState& body : simulation.bodyStates()) EXPECT_NEAR(body.velocity[0], together, 1e-3 * together);
+  }
+}
+
+// Blocks, balls and rollers that come down on each other: where the boundary cuts the pile makes no difference.
+TEST(Periodic, APileIsTheSameAcrossTheBoundary) {
+  for (const bool wet : {false, true}) {
+    const auto settle = [&](const Vector3d& shift) {
+      Scene scene = periodicScene();
+      scene.tank.size = {0.4, 0.4, 0.4};
+      scene.tank.cell_width = 0.025;
+      scene.tank.periodic[2] = false;
+      scene.liquid.fill_level = wet ? 0.2 : 0.0;
+      scene.liquid.density = 1000.0;
+      scene.gravity = {0.0, 0.0, -9.81};
+      scene.time_step = 0.02;
+      scene.solver.tolerance = 1e-7;
+      scene.contact.friction = 0.5;
+      scene.bodies = {boxBody("base", {0.2, 0.16, 0.1}, 2000.0, {0.2, 0.2, 0.05}),
+                      boxBody("beam", {0.26, 0.08, 0.06}, 3000.0, {0.21, 0.19, 0.135}),
+                      sphereBody("ball", 0.05, 4000.0, {0.18, 0.21, 0.22}),
+                      cylinderBody("roller", 0.05, 0.1, 5000.0, {0.3, 0.22, 0.22})};
+      for (BodyDescription& body : scene.bodies) body.X_WB.translation() += shift;
+      Simulation simulation(scene);
+      bool pushed = false;
+      for (int i = 0; i < 15; ++i) {
+        const StepReport report = simulation.step();
+        EXPECT_TRUE(report.committed()) << report.message;
+        pushed = pushed || simulation.bodyStates()[1].contact.force.norm() > 1.0;
+      }
+      EXPECT_TRUE(pushed);
+      std::vector<Vector3d> positions;
+      for (const BodyState& body : simulation.bodyStates()) {
+        Vector3d x = body.X_WB.translation() - shift;
+        for (int a = 0; a < 2; ++a) x[a] -= 0.4 * std::floor(x[a] / 0.4);
+        positions.push_back(x);
+      }
+      return positions;
+    };
+    const std::vector<Vector3d> inside = settle(Vector3d::Zero());
+    for (const Vector3d& shift : {Vector3d(0.2, 0.0, 0.0), Vector3d(0.2, 0.2, 0.0)}) {
+      const std::vector<Vector3d> across = settle(shift);
+      for (std::size_t b = 0; b < inside.size(); ++b) {
+        EXPECT_LT((across[b] - inside[b]).norm(), wet ? 3e-5 : 1e-6) << b << (wet ? " wet" : " dry");
+      }
+    }
+  }
+}
+
+TEST(Periodic, BodiesThatOverlapAcrossTheBoundaryAreRefused) {
+  Scene scene = periodicScene();
+  scene.source = "test";
+  scene.bodies = {boxBody("left", {0.3, 0.3, 0.3}, 1.0, {0.05, 0.5, 0.5}),
+                  boxBody("right", {0.3, 0.3, 0.3}, 1.0, {0.85, 0.5, 0.5})};
+  const std::string expected = "bodies 'left' and 'right' overlap by 0.1 m, across the periodic boundary\n";
+  try {
+    Simulation simulation(scene);
+    FAIL() << "accepted";
+  } catch (const SceneError& error) {
+    EXPECT_EQ(error.what(), "test: bodies overlap at the start, expected them apart:\n" + expected);
+  }
+  scene.bodies[1].X_WB.translation()[0] = 0.7;
+  Simulation simulation(scene);
+  try {
+    simulation.setBodyState(1, Eigen::Isometry3d(Eigen::Translation3d(-0.15, 0.5, 0.5)), Vector3d::Zero(),
+                            Vector3d::Zero());
+    FAIL() << "accepted";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
   }
 }
 
