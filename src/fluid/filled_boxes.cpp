@@ -1,6 +1,7 @@
 #include "fluid/filled_boxes.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "fluid/level_set.h"
@@ -98,6 +99,39 @@ double FilledBoxes::distance(const Eigen::Vector3d& x) const {
     }
   }
   return in > -kLevelSetFar ? in : isCovered(x) ? -kLevelSetBand : out;
+}
+
+// The faces of the boxes divide the cell into blocks that lie in them or do not.
+double FilledBoxes::part(const Eigen::Vector3d& centre) const {
+  const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5 * grid_.h);
+  const Eigen::AlignedBox3d cell(centre - half, centre + half);
+  std::vector<const Eigen::AlignedBox3d*> boxes;
+  std::array<std::vector<double>, 3> cuts;
+  for (int a = 0; a < 3; ++a) cuts[a] = {cell.min()[a], cell.max()[a]};
+  for (const Filled& filled : filled_) {
+    if (filled.box.contains(cell)) return 1.0;
+    if (!filled.box.intersects(cell)) continue;
+    boxes.push_back(&filled.box);
+    for (int a = 0; a < 3; ++a) {
+      for (const double at : {filled.box.min()[a], filled.box.max()[a]}) {
+        if (at > cell.min()[a] && at < cell.max()[a]) cuts[a].push_back(at);
+      }
+    }
+  }
+  for (auto& along : cuts) std::sort(along.begin(), along.end());
+  double volume = 0.0;
+  for (std::size_t i = 1; i < cuts[0].size(); ++i) {
+    for (std::size_t j = 1; j < cuts[1].size(); ++j) {
+      for (std::size_t k = 1; k < cuts[2].size(); ++k) {
+        const Eigen::AlignedBox3d block(Eigen::Vector3d(cuts[0][i - 1], cuts[1][j - 1], cuts[2][k - 1]),
+                                        Eigen::Vector3d(cuts[0][i], cuts[1][j], cuts[2][k]));
+        const bool covered = std::any_of(boxes.begin(), boxes.end(),
+                                         [&](const Eigen::AlignedBox3d* box) { return box->contains(block.center()); });
+        if (covered) volume += block.volume();
+      }
+    }
+  }
+  return volume / grid_.cellVolume();
 }
 
 }  // namespace monolith

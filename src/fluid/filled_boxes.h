@@ -22,6 +22,9 @@ class FilledBoxes {
   // tank's walls, on solids or in other liquid there is no surface.
   double distance(const Eigen::Vector3d& x) const;
 
+  // Part of a cell, by its centre (W), that lies in the boxes, solids or not.
+  double part(const Eigen::Vector3d& centre) const;
+
  private:
   struct Filled {
     Eigen::AlignedBox3d box;

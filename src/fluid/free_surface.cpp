@@ -15,6 +15,15 @@ constexpr double kTravelToRedistance = 1.5;  // cells
 constexpr double kClearSlope = 1.0;          // of the distance from a solid, over two cells: half of what it is
 constexpr double kSampleBeyondSolid = 0.75;  // cells: outside, where the value is the liquid's own
 constexpr double kSlopeBeyondFoot = 1.0;     // cells: further out, where the slope is
+// Cells that are fitted to what the boxes hold of them: so far from the surface at most, farther than that from solids,
+// cells...
+constexpr double kFarthestFitted = 2.0, kBesideSolid = 1.0;
+constexpr double kMostOfCut = 0.5;  // cells: the distance of one that the surface cuts is looked for from there
+// ... where the distance has so much slope over two cells: in the middle of a sheet no plane tells anything...
+constexpr double kLeastFittedSlope = 0.5;
+// ... to this part of a cell, or as closely as so many sweeps do; most take four.
+constexpr double kFitTolerance = 0.005;
+constexpr int kFitSweeps = 10;
 
 }  // namespace
 
@@ -38,6 +47,64 @@ FreeSurface::FreeSurface(const MacGrid& grid, double fill_height, const std::vec
   }
   // A tank filled to within half a cell of its lid still has a surface unless it is filled to the lid.
   if (fill_height > 0.0 && fill_height < grid.size()[2] * (1.0 - 1e-12) && boxes.empty()) full_ = false;
+  extendIntoHalo(l, distance_);
+  if (!boxes.empty() && !full_ && !empty_) fitToParts(liquid, solid_distance);
+}
+
+// A plane at the distance from an edge or a corner leaves more of a cell in the liquid, or less, than there is: of a
+// cube of a few cells, half as much again. Where faces are far apart nothing changes.
+void FreeSurface::fitToParts(const FilledBoxes& liquid, const SolidDistance& solid_distance) {
+  const Lattice& l = grid_.lattice;
+  struct Fitted {
+    std::ptrdiff_t cell;
+    double part;
+    double distance;
+  };
+  std::vector<Fitted> fitted;
+  std::vector<std::ptrdiff_t> wet;
+  for (int k = 0; k < l.n[2]; ++k) {
+    for (int j = 0; j < l.n[1]; ++j) {
+      for (int i = 0; i < l.n[0]; ++i) {
+        const auto c = l.index(i, j, k);
+        const Eigen::Vector3d centre = grid_.cellCenter(i, j, k);
+        if (solid_distance && !(solid_distance(centre) > kBesideSolid)) continue;
+        const double part = liquid.part(centre);
+        // Beside a seam an edge may be near where no face is.
+        const bool cut = part > kFitTolerance && part < 1.0 - kFitTolerance;
+        if (cut) distance_[c] = std::clamp(distance_[c], -kMostOfCut, kMostOfCut);
+        if (std::abs(distance_[c]) > kFarthestFitted) continue;
+        fitted.push_back({c, part, distance_[c]});
+        if (distance_[c] < 0.0) wet.push_back(c);
+      }
+    }
+  }
+  extendIntoHalo(l, distance_);
+  const std::vector<double> before = distance_;
+  for (int sweep = 0; sweep < kFitSweeps; ++sweep) {
+    bool changed = false;
+    for (Fitted& cell : fitted) {
+      const Eigen::Vector3d slope = slopeAt(cell.cell);
+      const double excess = partInLiquid(cell.distance, slope) - cell.part;
+      if (std::abs(excess) <= kFitTolerance || slope.norm() < kLeastFittedSlope) continue;
+      cell.distance += excess;
+      changed = true;
+    }
+    if (!changed) break;
+    for (const Fitted& cell : fitted) distance_[cell.cell] = cell.distance;
+    extendIntoHalo(l, distance_);
+  }
+  // Liquid of a few cells that hold little each is in one of them still.
+  for (const auto c : wet) {
+    bool lost = true;
+    for (const int k : {-1, 0, 1}) {
+      for (const int j : {-1, 0, 1}) {
+        for (const int i : {-1, 0, 1}) {
+          lost = lost && distance_[c + i * l.stride[0] + j * l.stride[1] + k * l.stride[2]] >= 0.0;
+        }
+      }
+    }
+    if (lost) distance_[c] = before[c];
+  }
   extendIntoHalo(l, distance_);
 }
 
@@ -107,11 +174,9 @@ void FreeSurface::extendIntoSolids(const std::vector<float>& solid_distance, con
 }
 
 Eigen::Vector3d FreeSurface::normal(std::ptrdiff_t c) const {
-  const Lattice& l = grid_.lattice;
-  Eigen::Vector3d slope;
-  for (int a = 0; a < 3; ++a) slope[a] = distance_[c + l.stride[a]] - distance_[c - l.stride[a]];
-  const double length = slope.norm();
-  return length > 0.0 ? Eigen::Vector3d(slope / length) : Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d out = slopeAt(c);
+  const double length = out.norm();
+  return length > 0.0 ? Eigen::Vector3d(out / length) : Eigen::Vector3d::UnitZ();
 }
 
 }  // namespace monolith

@@ -20,7 +20,8 @@ namespace monolith {
 
 class FreeSurface {
  public:
-  // Liquid below `fill_height` (m above the tank's floor) and in boxes (W), see FilledBoxes.
+  // Liquid below `fill_height` (m above the tank's floor) and in boxes (W), see FilledBoxes. At edges and corners of
+  // boxes the distance is not that from them but what makes volume() theirs; beside solids it is left as it is.
   FreeSurface(const MacGrid& grid, double fill_height, const std::vector<Eigen::AlignedBox3d>& boxes,
               const SolidDistance& solid_distance = nullptr);
 
@@ -81,6 +82,17 @@ class FreeSurface {
     std::vector<std::uint8_t> nearness;
   };
 
+  void fitToParts(const FilledBoxes& liquid, const SolidDistance& solid_distance);
+  // Of the distance, over two cells.
+  Eigen::Vector3d slopeAt(std::ptrdiff_t cell) const {
+    Eigen::Vector3d slope;
+    for (int a = 0; a < 3; ++a) {
+      const std::ptrdiff_t next = grid_.lattice.stride[a];
+      slope[a] = distance_[cell + next] - distance_[cell - next];
+    }
+    return slope;
+  }
+  static double partInLiquid(double distance, const Eigen::Vector3d& slope);  // of a cell
   void redistance(const std::vector<float>& solid_distance);
   Pools findPools(const std::vector<double>& cell_fluid, const FaceField<double>& open) const;
   CutCells findCutCells(double margin, const std::vector<double>& cell_fluid, const Pools& pools) const;

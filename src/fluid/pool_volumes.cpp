@@ -20,13 +20,12 @@ constexpr double kVolumeTolerance = 1e-10;
 constexpr int kLeastCellsOfPool = 27;
 constexpr double kDeep = 0.5;  // cells
 
-// Of a cell.
-double partInLiquid(double distance, const Eigen::Vector3d& slope) {
+}  // namespace
+
+double FreeSurface::partInLiquid(double distance, const Eigen::Vector3d& slope) {
   if (distance > 1.0) return 0.0;
   return distance > -1.0 ? insideFraction(distance, slope, 1.0) : 1.0;
 }
-
-}  // namespace
 
 // Drops and films are no pools: they count to the pool that is the nearest by the way around solids.
 FreeSurface::Pools FreeSurface::findPools(const std::vector<double>& cell_fluid, const FaceField<double>& open) const {
@@ -90,13 +89,11 @@ FreeSurface::CutCells FreeSurface::findCutCells(double margin, const std::vector
           full += cell_fluid[c];
           continue;
         }
-        Eigen::Vector3d slope;
-        for (int a = 0; a < 3; ++a) slope[a] = distance_[c + l.stride[a]] - distance_[c - l.stride[a]];
         if (pool < 0) {
-          full += partInLiquid(d, slope) * cell_fluid[c];
+          full += partInLiquid(d, slopeAt(c)) * cell_fluid[c];
           continue;
         }
-        plane.cells.push_back({d, cell_fluid[c], slope, pool});
+        plane.cells.push_back({d, cell_fluid[c], slopeAt(c), pool});
       }
     }
   }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace monolith {
@@ -47,6 +48,47 @@ TEST(FreeSurface, ASeamIsNoSurface) {
   }
   const Eigen::AlignedBox3d upper(Eigen::Vector3d(0.0, 0.0, 0.225), Eigen::Vector3d(0.6, 0.6, 0.4));
   EXPECT_NEAR(FreeSurface(grid, 0.225, {upper}).volume(open), 0.4 * 0.36, 1e-9);
+}
+
+// Of cubes of liquid, wherever their faces lie between the grid's: edges and corners hold no more than there is.
+TEST(FreeSurface, VolumeOfABoxIsThatOfTheBox) {
+  const MacGrid grid = cube(20, 0.05);
+  const std::vector<double> open(grid.lattice.size, 1.0);
+  for (const double cells : {2.0, 2.5, 3.0, 4.0, 5.0, 7.5}) {
+    for (const double offset : {0.0, 0.25, 0.5, 0.75, 0.9}) {
+      const Eigen::Vector3d low = Eigen::Vector3d::Constant((5.0 + offset) * grid.h);
+      const Eigen::Vector3d high = low + Eigen::Vector3d::Constant(cells * grid.h);
+      const double volume = std::pow(cells * grid.h, 3);
+      EXPECT_NEAR(FreeSurface(grid, 0.0, {{low, high}}).volume(open), volume, 0.01 * volume) << cells << ", " << offset;
+      // On the floor and in a corner, on a pool, through its surface; an L, and two that overlap.
+      const Eigen::Vector3d floor(low[0], low[1], 0.0), corner(0.0, 0.0, 0.0);
+      EXPECT_NEAR(FreeSurface(grid, 0.0, {{floor, high}}).volume(open), (high - floor).prod(), 0.02 * volume);
+      EXPECT_NEAR(FreeSurface(grid, 0.0, {{corner, high}}).volume(open), high.prod(), 0.02 * volume);
+      EXPECT_NEAR(FreeSurface(grid, low[2], {{low, high}}).volume(open), low[2] + volume, 0.02 * volume);
+      const double level = low[2] + 0.3 * grid.h;
+      const double part = 1.0 - 0.3 / cells;
+      EXPECT_NEAR(FreeSurface(grid, level, {{low, high}}).volume(open), level + part * volume, 0.02 * volume);
+      const Eigen::Vector3d along = cells * grid.h * Eigen::Vector3d(0.5, 0.0, 0.0);
+      const Eigen::Vector3d across = cells * grid.h * Eigen::Vector3d(0.0, 0.4, 0.4);
+      EXPECT_NEAR(FreeSurface(grid, 0.0, {{low, high + along}, {low, high + across}}).volume(open),
+                  (1.5 + 1.4 * 1.4 - 1.0) * volume, 0.02 * volume);
+    }
+  }
+}
+
+// As much as cells can hold: liquid that no cell has more than a part of is in one of them still.
+TEST(FreeSurface, ABlobOfACellOrTwoStays) {
+  const MacGrid grid = cube(12, 0.05);
+  const std::vector<double> open(grid.lattice.size, 1.0);
+  for (const double cells : {1.2, 1.5, 1.9}) {
+    for (const double offset : {0.0, 0.25, 0.4, 0.5, 0.9}) {
+      const Eigen::Vector3d low = Eigen::Vector3d::Constant((5.0 + offset) * grid.h);
+      const double side = cells * grid.h, volume = side * side * side;
+      const FreeSurface blob(grid, 0.0, {{low, low + Eigen::Vector3d::Constant(side)}});
+      EXPECT_GT(std::count_if(blob.distance().begin(), blob.distance().end(), [](double d) { return d < 0.0; }), 0);
+      EXPECT_NEAR(blob.volume(open), volume, 0.25 * volume) << cells << ", " << offset;
+    }
+  }
 }
 
 // As far as the liquid goes, also where that is further than the band in which the level set is a distance.

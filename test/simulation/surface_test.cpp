@@ -96,6 +96,26 @@ TEST(Surface, ShortWavesKeepTheirHeightWhereverTheSurfaceLiesInItsCells) {
   }
 }
 
+// Free on all sides, across a periodic boundary, on a plate: the liquid is that of the box, from the start on.
+TEST(Surface, ABoxOfLiquidHasTheVolumeOfTheBox) {
+  for (const double offset : {0.0, 0.005, 0.01}) {
+    for (const bool on_plate : {false, true}) {
+      Scene scene = water({16, 16, 16}, 0.02);
+      scene.tank.periodic[0] = true;
+      const Vector3d low(0.3 + offset, 0.1 + offset, 0.12), size(0.08, 0.08, 0.08 + offset);
+      const Vector3d kept(0.32 - low[0], size[1], size[2]);
+      scene.liquid.boxes = {Eigen::AlignedBox3d(low, low + kept),
+                            Eigen::AlignedBox3d(Vector3d(0.0, low[1], low[2]),
+                                                Vector3d(size[0] - kept[0], low[1] + size[1], low[2] + size[2]))};
+      if (on_plate) scene.bodies = {fixed(boxBody("plate", {0.28, 0.28, 0.12}, 1000.0, {0.0, 0.16, 0.06}))};
+      Simulation simulation(scene);
+      EXPECT_NEAR(simulation.report().liquid_volume, size.prod(), 0.02 * size.prod()) << offset << ", " << on_plate;
+      for (int i = 0; i < 5; ++i) ASSERT_TRUE(simulation.step().committed());
+      EXPECT_NEAR(simulation.report().liquid_volume, size.prod(), 0.02 * size.prod()) << offset << ", " << on_plate;
+    }
+  }
+}
+
 // A box of liquid ends at a solid that it lies against, not at one that its surface is cut by.
 TEST(Surface, ABoxOfLiquidAroundAFloatingBodyIsAsStillAsALevel) {
   Scene by_level = water({16, 16, 16}, 0.02);
