@@ -11,6 +11,11 @@ Vector6d velocityRow(int axis, const Eigen::Vector3d& x, const Eigen::Vector3d& 
   return row;
 }
 
+Eigen::Vector3d toImageAt(const RigidBody& body, const MacGrid& grid, const Eigen::Vector3d& x) {
+  if (!grid.lattice.anyPeriodic()) return Eigen::Vector3d::Zero();
+  return grid.toNearestImage(x, body.pose() * body.distance->bounds().center());
+}
+
 void appendRows(const std::vector<BodyRows>& parts, BodyRows& out) {
   constexpr int kLists = 11;
   const auto list = [](auto& rows, int i) -> auto& {

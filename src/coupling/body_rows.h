@@ -17,6 +17,10 @@ namespace monolith {
 // Twist -> component `axis` of the velocity of the body's point at x.
 Vector6d velocityRow(int axis, const Eigen::Vector3d& x, const Eigen::Vector3d& p_WBcm);
 
+// From x to that of its periodic images which is nearest to the body: to the middle of its box. From its centre of mass
+// a body may reach farther than half a period.
+Eigen::Vector3d toImageAt(const RigidBody& body, const MacGrid& grid, const Eigen::Vector3d& x);
+
 // What the twist of a body adds to one sample: coefficient . twist.
 struct BodyRow {
   std::ptrdiff_t sample = 0;

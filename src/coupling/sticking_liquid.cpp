@@ -153,7 +153,7 @@ std::vector<Matrix6d> closeThinWalls(const MacGrid& grid, const std::vector<Rigi
         double& fluid = solids.fluid[a][f];
         if (!(fluid > 0.0) || solids.distance[a][f] > 0.0F || owner < 0 || !mayBeThin(bodies[owner])) continue;
         const Eigen::Vector3d x = grid.faceCenter(a, i, j, k);
-        const Eigen::Vector3d image = x + grid.toNearestImage(x, bodies[owner].p_WBcm);
+        const Eigen::Vector3d image = x + toImageAt(bodies[owner], grid, x);
         if (!isThinner(*bodies[owner].distance, X_BW[owner] * image, kThroughCorner * kThinWall * grid.h)) continue;
         found[k].push_back({a, f, owner, fluid});
         fluid = 0.0;

@@ -38,7 +38,7 @@ class RowBuilder {
     const int owner = solids_.owner[axis][f];
     if (owner < 0) return;
     const Eigen::Vector3d& p_WBcm = bodies_[owner].p_WBcm;
-    const Eigen::Vector3d shift = grid_.toNearestImage(x_face, p_WBcm);
+    const Eigen::Vector3d shift = toImageAt(bodies_[owner], grid_, x_face);
     Vector6d row = velocityRow(axis, target + shift, p_WBcm);
     if (samples_.kind(axis, f) == FaceKind::kSliver) row -= velocityRow(axis, x_face + shift, p_WBcm);
     if (row.cwiseAbs().maxCoeff() == 0.0) return;
@@ -113,9 +113,9 @@ void buildBodyRows(const MacGrid& grid, const SolidFractions& solids, const std:
           }
           if (coefficients.drag[a][c] > 0.0 && solids.owner[a][c] >= 0) {
             const int owner = solids.owner[a][c];
-            const Eigen::Vector3d& p_WBcm = bodies[owner].p_WBcm;
+            const RigidBody& body = bodies[owner];
             const Eigen::Vector3d x = grid.faceCenter(a, i, j, k);
-            slab.drag[a].push_back({c, owner, velocityRow(a, x + grid.toNearestImage(x, p_WBcm), p_WBcm)});
+            slab.drag[a].push_back({c, owner, velocityRow(a, x + toImageAt(body, grid, x), body.p_WBcm)});
           }
         }
         for (int p = 0; p < 3; ++p) {

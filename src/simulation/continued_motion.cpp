@@ -154,8 +154,8 @@ void completeMotion(const SolidFractions& solids, const MacGrid& grid, const std
           has[i] = 1;
         } else if (no_slip) {
           const Eigen::Vector3d x = grid.faceCenter(a, i, j, k);
-          const Eigen::Vector3d& p_WBcm = bodies[owner].p_WBcm;
-          const Vector6d point = velocityRow(a, x + grid.toNearestImage(x, p_WBcm), p_WBcm);
+          const RigidBody& body = bodies[owner];
+          const Vector6d point = velocityRow(a, x + toImageAt(body, grid, x), body.p_WBcm);
           for (const LiquidField& field : fields) (*field.values)[a][f] = point.dot((*field.of_bodies)[owner]);
           has[i] = 1;
         }

@@ -38,7 +38,6 @@ SolidDistance solidDistance(const MacGrid& grid, const std::vector<RigidBody>& b
   struct Placed {
     std::shared_ptr<const SignedDistance> shape;
     Eigen::Isometry3d X_BW;
-    Eigen::Vector3d p_WBcm;
     Eigen::AlignedBox3d around;  // W
   };
   std::vector<Placed> placed;
@@ -46,12 +45,12 @@ SolidDistance solidDistance(const MacGrid& grid, const std::vector<RigidBody>& b
     Eigen::AlignedBox3d around = body.distance->bounds().transformed(body.pose());
     around.extend((around.min().array() - grid.h).matrix().eval());
     around.extend((around.max().array() + grid.h).matrix().eval());
-    placed.push_back({body.distance, body.pose().inverse(), body.p_WBcm, around});
+    placed.push_back({body.distance, body.pose().inverse(), around});
   }
   return [grid, placed](const Eigen::Vector3d& x) {
     double least = std::numeric_limits<double>::infinity();
     for (const Placed& body : placed) {
-      const Eigen::Vector3d image = x + grid.toNearestImage(x, body.p_WBcm);
+      const Eigen::Vector3d image = x + grid.toNearestImage(x, body.around.center());
       if (body.around.contains(image)) least = std::min(least, body.shape->distance(body.X_BW * image) / grid.h);
     }
     return least;

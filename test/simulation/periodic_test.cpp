@@ -156,6 +156,21 @@ TEST(Periodic, BodiesThatOverlapAcrossTheBoundaryAreRefused) {
   } catch (const std::invalid_argument& error) {
     EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
   }
+
+// Where the centre of mass of a prescribed body lies changes nothing, also farther than half a period from its end.
+TEST(Periodic, TheCentreOfMassOfAPrescribedBodyDoesNotMatter) {
+  std::vector<Vector3d> torques;  // about the origin of the body's frame
+  for (const double offset : {0.0, 0.1, 0.3}) {
+    Scene scene = periodicScene();
+    scene.bodies = {boxBody("bar", {0.7, 0.2, 0.2}, 1.0, {0.5, 0.5, 0.5})};
+    scene.bodies[0].p_BBcm = {offset, 0.0, 0.0};
+    scene.bodies[0].motion = BodyMotion::kPrescribed;
+    scene.bodies[0].prescribed.twist << 0.0, 0.0, 0.0, 0.0, 0.6, 0.0;
+    const Wrench liquid = wrenchOn(scene);
+    torques.push_back(liquid.torque + Vector3d(offset, 0.0, 0.0).cross(liquid.force));
+  }
+  EXPECT_LT(torques[0][1], -0.01);
+  for (const Vector3d& torque : torques) EXPECT_LT((torque - torques[0]).norm(), 1e-3 * torques[0].norm());
 }
 
 // A body and the liquid around it that move alike, turning about the body or not, go on as they are: also the liquid
