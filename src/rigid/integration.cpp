@@ -57,13 +57,29 @@ void finishMotion(const FreeMotion& motion, const Vector6d& twist, double dt, Ri
   body.twist = twist;
 }
 
-Vector6d prescribedTwist(const RigidBody& body, double time) {
-  const PrescribedMotion& motion = body.prescribed;
-  const double rate = 2.0 * M_PI * motion.frequency;
-  Vector6d twist = motion.twist + motion.amplitude * (rate * std::cos(rate * time + motion.phase));
+namespace {
+
+// Of a twist of the frame's origin that of the centre of mass.
+Vector6d atCentre(const RigidBody& body, Vector6d twist) {
   const Vector3d angular_velocity = twist.tail<3>();
   twist.head<3>() += angular_velocity.cross(body.q_WB * body.p_BBcm);
   return twist;
+}
+
+}  // namespace
+
+Vector6d prescribedTwist(const RigidBody& body, double time) {
+  const PrescribedMotion& motion = body.prescribed;
+  const double rate = 2.0 * M_PI * motion.frequency;
+  return atCentre(body, motion.twist + motion.amplitude * (rate * std::cos(rate * time + motion.phase)));
+}
+
+Vector6d meanPrescribedTwist(const RigidBody& body, double time, double dt) {
+  const PrescribedMotion& motion = body.prescribed;
+  const double half = M_PI * motion.frequency * dt;  // of the angle that the oscillation passes
+  // (sin(a + 2 half) - sin(a))/dt without the difference.
+  const double mean = 2.0 / dt * std::sin(half) * std::cos(2.0 * M_PI * motion.frequency * time + half + motion.phase);
+  return atCentre(body, motion.twist + motion.amplitude * mean);
 }
 
 RigidBody makeRigidBody(const BodyDescription& description, double distance_resolution) {

@@ -38,6 +38,9 @@ void finishMotion(const FreeMotion& motion, const Vector6d& twist, double dt, Ri
 
 // Twist of the centre of mass that a prescribed body has at time t.
 Vector6d prescribedTwist(const RigidBody& body, double time);
+// Its mean from then on over dt: advancePose() by it ends where the motion does, however long dt is; where the axis of
+// rotation changes, by second order.
+Vector6d meanPrescribedTwist(const RigidBody& body, double time, double dt);
 
 // The body at time 0. `distance_resolution` (m): see geometry/shape.h.
 RigidBody makeRigidBody(const BodyDescription& description, double distance_resolution);

@@ -85,7 +85,7 @@ BodyPlan planEuler(const std::vector<RigidBody>& bodies, const Vector3d& gravity
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const RigidBody& body = bodies[b];
     plan.free_twists.push_back(body.motion == BodyMotion::kFree         ? freeTwist(body, gravity, wrenches[b], dt)
-                               : body.motion == BodyMotion::kPrescribed ? prescribedTwist(body, time + 0.5 * dt)
+                               : body.motion == BodyMotion::kPrescribed ? meanPrescribedTwist(body, time, dt)
                                                                         : Vector6d(Vector6d::Zero()));
   }
   return plan;
@@ -103,8 +103,8 @@ BodyPlan planSecondOrder(const std::vector<RigidBody>& bodies, const Vector3d& g
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     RigidBody& body = plan.bodies[b];
     if (body.motion == BodyMotion::kPrescribed) {
-      // The pose by the twist half-way, the velocity of the end.
-      body.twist = prescribedTwist(body, time + 0.5 * dt);
+      // The pose by the mean, the velocity of the end.
+      body.twist = meanPrescribedTwist(body, time, dt);
       advancePose(body, dt);
       body.twist = prescribedTwist(body, time + dt);
       plan.free_twists[b] = body.twist;

@@ -21,6 +21,8 @@ namespace {
 constexpr double kMeshResolution = 0.5;     // of a cell: spacing of the distance grid of meshes
 constexpr double kOverlapTolerance = 0.05;  // of a cell, at the start
 constexpr int kLargestSubsteps = 64;
+// Sub-steps in a period of what oscillates as prescribed: of fewer the velocities do not tell how it moves.
+constexpr double kSubstepsInPeriod = 10.0;
 // How often in a step a sub-step that fails is tried again, half as long: contacts that do not settle where the bodies
 // are may do so a little further on, and a viscous number that is too large gets smaller.
 constexpr int kMostRetries = 6;
@@ -57,6 +59,21 @@ SolidDistance solidDistance(const MacGrid& grid, const std::vector<RigidBody>& b
   };
 }
 
+bool oscillates(const RigidBody& body) {
+  return body.motion == BodyMotion::kPrescribed && !body.prescribed.amplitude.isZero(0.0);
+}
+
+// Empty if a step may have as many sub-steps as a prescribed oscillation asks for.
+std::string describeFastOscillation(const RigidBody& body, double time_step) {
+  const double highest = kLargestSubsteps / (kSubstepsInPeriod * time_step);
+  if (!oscillates(body) || body.prescribed.frequency <= highest) return "";
+  std::ostringstream text;
+  text << "body '" << body.name << "': prescribed.frequency: value " << body.prescribed.frequency
+       << " Hz: what it drives is inaccurate; expected at most " << highest << " Hz, so that time_step/"
+       << kLargestSubsteps << ", the shortest sub-step, is a tenth of the period";
+  return text.str();
+}
+
 }  // namespace
 
 Simulation::Simulation(const Scene& scene) : impl_(std::make_unique<Impl>(scene)) { impl_->initialise(); }
@@ -70,6 +87,8 @@ void Simulation::Impl::initialise() {
     state.bodies.push_back(makeRigidBody(body, kMeshResolution * grid.h));
     RigidBody& made = state.bodies.back();
     made.p_WBcm = walls.imageInside(made.p_WBcm);
+    const std::string fast = describeFastOscillation(made, scene.time_step);
+    if (!fast.empty()) warnings.push_back(scene.source + ": " + fast);
     if (!scene.liquid.any()) continue;
     const BodyResolution resolution = judgeResolution(grid.h, made);
     made.thinnest = resolution.thinnest;
@@ -113,10 +132,13 @@ void Simulation::Impl::prepareGeometry() {
 
 // What a sub-step should be at most, s.
 double Simulation::Impl::longestStep() const {
-  const double by_speed = scene.solver.cfl * grid.h / std::max(bodySpeed(), state.liquid_speed);
+  double longest = scene.solver.cfl * grid.h / std::max(bodySpeed(), state.liquid_speed);
+  for (const RigidBody& body : state.bodies) {
+    if (oscillates(body)) longest = std::min(longest, 1.0 / (kSubstepsInPeriod * body.prescribed.frequency));
+  }
   const double gravity = scene.gravity.norm();
-  if (!hasSurface() || gravity == 0.0) return by_speed;
-  return std::min(by_speed, longestWaveStep(grid.h, gravity, state.typical_viscosity / scene.liquid.density));
+  if (!hasSurface() || gravity == 0.0) return longest;
+  return std::min(longest, longestWaveStep(grid.h, gravity, state.typical_viscosity / scene.liquid.density));
 }
 
 double Simulation::Impl::bodySpeed() const {

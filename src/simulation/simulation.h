@@ -42,11 +42,11 @@ class Simulation {
 
   const Scene& scene() const;
   double time() const;
-  // What of the scene its grid is too coarse for, to be shown to whoever runs it.
+  // What of the scene its grid or its time step is too coarse for, to be shown to whoever runs it.
   const std::vector<std::string>& warnings() const;
 
-  // Advances by scene().time_step, in as many sub-steps as the CFL number and the surface's waves ask for, but 64
-  // at most, whatever they ask for.
+  // Advances by scene().time_step, in as many sub-steps as the CFL number, the surface's waves and prescribed
+  // oscillations ask for, but 64 at most, whatever they ask for.
   [[nodiscard]] StepReport step();
   // Report of the last step, committed or not; before the first its status is kNotRun. Volume and energies are those of
   // the present state also after setBodyState().

@@ -152,6 +152,26 @@ TEST(PrescribedTwist, IntegratesToTheAmplitude) {
   EXPECT_NEAR(std::atan2(X.linear()(1, 0), X.linear()(0, 0)), 0.4, 1e-6);
 }
 
+TEST(PrescribedTwist, ItsMeanEndsWhereTheMotionDoesAtAnyStep) {
+  BodyDescription description = shaker();
+  description.prescribed.twist << 0.1, 0, 0, 0, 0, 1.0;
+  description.prescribed.amplitude << 0.05, 0, -0.02, 0, 0, 0.4;
+  description.prescribed.phase = 0.7;
+  for (const double dt : {1e-6, 0.1, 0.3, 0.5, 5.3}) {  // the period is 0.5
+    RigidBody body = makeRigidBody(description, 0.1);
+    for (int step = 0; step < 3; ++step) {
+      body.twist = meanPrescribedTwist(body, step * dt, dt);
+      advancePose(body, dt);
+    }
+    const double t = 3.0 * dt, swing = std::sin(4.0 * M_PI * t + 0.7) - std::sin(0.7);
+    const Eigen::Isometry3d X = body.pose();
+    EXPECT_LT((X.translation() - Vector3d(0.1 * t + 0.05 * swing, 0, -0.02 * swing)).norm(), 1e-13) << dt;
+    EXPECT_LT((X.linear() - test::turn((t + 0.4 * swing) * 180.0 / M_PI, Vector3d::UnitZ()).toRotationMatrix()).norm(),
+              1e-12)
+        << dt;
+  }
+}
+
 TEST(PrescribedTwist, LeavesAPivotWhereItIsAtAnyStep) {
   BodyDescription description = shaker();
   description.prescribed.twist << 0, 0, 0, 0, 0, 2.0 * M_PI;
