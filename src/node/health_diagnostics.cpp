@@ -81,10 +81,10 @@ void HealthDiagnostics::tellLiquid(Status& status) {
   const double drift = health_.initial_volume > 0.0 ? report.liquid_volume / health_.initial_volume - 1.0 : 0.0;
   if (report.status == SolveStatus::kNotRun) {
     status.summary(DiagnosticStatus::OK, "No step yet");
-  } else if (!report.model.liquid) {
-    status.summary(DiagnosticStatus::OK, "No liquid");
   } else if (std::abs(drift) > kVolumeTolerance) {
     status.summaryf(DiagnosticStatus::WARN, "Volume changed by %.1f %% since the start", 100.0 * drift);
+  } else if (!report.model.liquid) {
+    status.summary(DiagnosticStatus::OK, "No liquid");
   } else {
     status.summary(DiagnosticStatus::OK, "Volume kept");
   }

@@ -16,7 +16,7 @@ struct NodeHealth {
   double real_time_factor = 0.0;
   bool failed = false;          // the last step was not committed
   StepReport report;            // of the last step
-  double initial_volume = 0.0;  // m^3 of liquid after the first step
+  double initial_volume = 0.0;  // m^3 of liquid, of the scene at time 0
 };
 
 class HealthDiagnostics {

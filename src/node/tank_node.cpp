@@ -36,6 +36,7 @@ TankNode::TankNode(ros::NodeHandle& global, ros::NodeHandle& local, ros::Callbac
   health_.paced = options.paced;
   health_.paused = options.start_paused;
   health_.report = control_.simulation().report();
+  health_.initial_volume = health_.report.liquid_volume;
   if (options.progress && options.duration > 0.0) progress_ = std::make_unique<ProgressBar>(options.duration);
   for (const std::string& warning : control_.simulation().warnings()) ROS_WARN_STREAM(warning);
   const double possible = 1.0 / scene.time_step;
@@ -124,7 +125,6 @@ bool TankNode::advance() {
     setPaused(true);
     return false;
   }
-  if (health_.initial_volume == 0.0) health_.initial_volume = health_.report.liquid_volume;
   factor_.add(wallNow(), control_.simulation().time());
   health_.real_time_factor = factor_.value();
   publisher_.publish(health_.report, health_.real_time_factor,
@@ -174,7 +174,7 @@ bool TankNode::reset(std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
   transforms_.clear();
   health_.report = control_.simulation().report();
   health_.failed = false;
-  health_.initial_volume = 0.0;
+  health_.initial_volume = health_.report.liquid_volume;
   publisher_.publishClock();
   ros::WallDuration(kClockLeadSec).sleep();
   publisher_.publish(health_.report, 0.0, StatePublisher::What::kAll);

@@ -74,6 +74,17 @@ std::string describeFastOscillation(const RigidBody& body, double time_step) {
   return text.str();
 }
 
+// Empty if a step may have as many sub-steps as keep the surface's shortest waves from growing.
+std::string describeLongStep(double time_step, double cell_width, double gravity, double kinematic_viscosity) {
+  const double longest = kLargestSubsteps * stableWaveStep(cell_width, gravity, kinematic_viscosity);
+  if (time_step <= longest) return "";
+  std::ostringstream text;
+  text << "time_step: value " << time_step << " s: expected at most " << longest << " s, " << kLargestSubsteps
+       << " sub-steps: in longer ones the shortest waves on the liquid, of two cells (tank.cell_width " << cell_width
+       << " m), grow until it is gone";
+  return text.str();
+}
+
 }  // namespace
 
 Simulation::Simulation(const Scene& scene) : impl_(std::make_unique<Impl>(scene)) { impl_->initialise(); }
@@ -120,6 +131,12 @@ void Simulation::Impl::initialise() {
   prepareGeometry();
   target_volume = state.surface[0].volume(solids.cell_fluid);
   state.typical_viscosity = viscosity_law.viscosity(0.0);
+  const double gravity = scene.gravity.norm();
+  if (hasSurface() && gravity > 0.0) {
+    const double viscosity = state.typical_viscosity / scene.liquid.density;
+    const std::string too_long = describeLongStep(scene.time_step, grid.h, gravity, viscosity);
+    if (!too_long.empty()) throw SceneError(scene.source + ": " + too_long);
+  }
   measureState(report);
   tellModel(report.model);
 }

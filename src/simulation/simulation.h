@@ -36,7 +36,7 @@ struct SurfacePoint {
 
 class Simulation {
  public:
-  // Throws SceneError: a body outside the tank, bodies that overlap.
+  // Throws SceneError: a body outside the tank, bodies that overlap, a time step too long for the liquid's surface.
   explicit Simulation(const Scene& scene);
   ~Simulation();
 

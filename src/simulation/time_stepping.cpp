@@ -17,6 +17,12 @@ StepWeights bdf2Weights(double dt, double last_dt) {
   return {2, dt, (1.0 + r) / (1.0 + 2.0 * r) * dt, r / (1.0 + 2.0 * r)};
 }
 
+double stableWaveStep(double cell_width, double gravity, double kinematic_viscosity) {
+  const double k = M_PI / cell_width;
+  const double damping = kinematic_viscosity * k * k, square = gravity * k;
+  return 2.0 * (damping + std::sqrt(damping * damping + square)) / square;
+}
+
 double longestWaveStep(double cell_width, double gravity, double kinematic_viscosity) {
   const double k = M_PI / cell_width;
   const double damping = kinematic_viscosity * k * k, square = gravity * k;

@@ -37,8 +37,10 @@ StepWeights eulerWeights(double dt);
 // Backward Euler if the step is more than twice the last one (zero-stable up to 1 + sqrt(2)) or there is none.
 StepWeights bdf2Weights(double dt, double last_dt);
 
-// s, up to which the shortest waves on deep liquid die away. With k = pi/h, omega^2 = g k and the damping nu k^2, which
-// is implicit, they are stable while (omega dt)^2 < 4 + 4 nu k^2 dt; half of that is allowed.
+// s, up to which the shortest waves on deep liquid do not grow. With k = pi/h, omega^2 = g k and the damping nu k^2,
+// which is implicit, they are stable while (omega dt)^2 < 4 + 4 nu k^2 dt.
+double stableWaveStep(double cell_width, double gravity, double kinematic_viscosity);
+// Up to which they die away: half of that.
 double longestWaveStep(double cell_width, double gravity, double kinematic_viscosity);
 
 }  // namespace monolith

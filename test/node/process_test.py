@@ -197,6 +197,16 @@ class ProcessTest(unittest.TestCase):
         level, message = self.summaries(lambda scene: scene.pop('liquid'), 'Liquid')[0]
         self.assertEqual((level, message), (0, 'No liquid'))
 
+    def testVolumeThatChangesInTheFirstStepIsAWarning(self):
+        def leaving(scene):
+            scene['liquid'].update(fill_level=0.16)
+            scene.update(time_step=0.5)
+            for body in scene['bodies']:
+                body.update(motion='prescribed', prescribed={'twist': [0, 0, 1, 0, 0, 0]})
+        level, message = self.summaries(leaving, 'Liquid')[0]
+        self.assertEqual(level, 1, message)
+        self.assertRegex(message, r'^Volume changed by [1-9]')
+
     def testDurationIsRoundedUpToWholeSteps(self):
         # The initial state has the stamp of one step, 0.02 s.
         for duration, end in (('0.001', 0.04), ('0.51', 0.54), ('0.5', 0.52)):

@@ -256,6 +256,32 @@ TEST(TimeStepping, AFloatingBoxAtRestStaysThere) {
   EXPECT_LT(simulation.bodyStates()[0].velocity.norm(), 1e-7);
 }
 
+// In steps that are longer than any number of sub-steps may be, the surface's shortest waves grow until all the liquid
+// is gone. Thick liquid damps them.
+TEST(TimeStepping, AStepTooLongForTheSurfaceIsRefused) {
+  const auto refusal = [](double viscosity, double fill_level, double time_step) -> std::string {
+    Scene scene = cube(8, viscosity, fill_level);
+    scene.time_step = time_step;
+    try {
+      Simulation simulation(scene);
+      for (int i = 0; i < 3; ++i) {
+        const StepReport report = simulation.step();
+        EXPECT_TRUE(report.committed()) << report.message;
+        EXPECT_NEAR(report.liquid_volume, 0.16 * 0.16 * fill_level, 0.01 * 0.16 * 0.16 * fill_level);
+      }
+    } catch (const SceneError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(refusal(0.001, 0.08, 3.3).find("test: time_step: value 3.3 s: expected at most 3.26"), std::string::npos)
+      << refusal(0.001, 0.08, 3.3);
+  EXPECT_NE(refusal(0.001, 0.08, 3.3).find("tank.cell_width 0.02 m"), std::string::npos);
+  EXPECT_EQ(refusal(0.001, 0.08, 3.2), "");
+  EXPECT_EQ(refusal(1.0, 0.08, 5.0), "");
+  EXPECT_EQ(refusal(0.001, 0.16, 5.0), "") << "no surface, no waves";
+}
+
 TEST(TimeStepping, AnInviscidWaveNeitherGrowsNorDies) {
   Scene scene = standingWave(0.0);
   scene.time_step = 0.02;
