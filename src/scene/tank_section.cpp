@@ -11,6 +11,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kCellTolerance = 1e-6;  // of a cell
+constexpr double kWidestCell = 1e9;      // m, and the inverse of the least: volumes and energies stay numbers
 constexpr int kLeastCells = 4;           // along an axis
 constexpr double kFarthestCells = 1e9;   // of the origin: beyond, a cell is lost in the round-off of positions
 constexpr double kDensest = 1e9;         // kg/m^3
@@ -60,6 +61,9 @@ bool readTank(const YAML::Node& node, TankDescription& tank, Violations& violati
   map.require("cell_width", "a width in m");
   map.read<3>("size", tank.size, Range::kPositive);
   map.read("cell_width", tank.cell_width, Range::kPositive);
+  if (!(tank.cell_width >= 1.0 / kWidestCell && tank.cell_width <= kWidestCell)) {
+    map.fail("cell_width", "from 1e-9 to 1e9 m");
+  }
   map.read("periodic", tank.periodic);
   if (violations.count() > violations_before || !fitCells(map, tank)) return false;
   tank.origin = Vector3d(-0.5 * tank.size.x(), -0.5 * tank.size.y(), 0.0);
