@@ -125,6 +125,7 @@ bool TankNode::advance() {
     setPaused(true);
     return false;
   }
+  if (!health_.report.warning.empty()) ROS_WARN_STREAM(health_.report.warning);
   factor_.add(wallNow(), control_.simulation().time());
   health_.real_time_factor = factor_.value();
   publisher_.publish(health_.report, health_.real_time_factor,

@@ -241,4 +241,14 @@ std::string describeIntrusion(const BodyPlan& plan, const std::vector<Contact>& 
   return "";
 }
 
+std::string describeDeparture(const RigidBody& body, const TankWalls& walls, double allowed) {
+  if (body.motion != BodyMotion::kPrescribed || !mayReachOut(body, walls, allowed)) return "";
+  const auto [depth, wall] = deepestInWalls(body, walls);
+  if (depth <= allowed) return "";
+  std::ostringstream text;
+  text << "body '" << body.name << "' moves out of the tank through its wall " << wall << ", now by " << depth
+       << " m, as prescribed: what is outside displaces no liquid, that of a full tank grows by as much";
+  return text.str();
+}
+
 }  // namespace monolith

@@ -55,4 +55,8 @@ std::string describeIntrusion(const BodyPlan& plan, const std::vector<Contact>& 
                               const std::vector<Vector6d>& twists, double dt, double allowed,
                               const std::vector<RigidBody>& before, const std::vector<RigidBody>& after);
 
+// Names the wall that a prescribed body has been driven out through by more than `allowed` (m), and how far. Empty if
+// none.
+std::string describeDeparture(const RigidBody& body, const TankWalls& walls, double allowed);
+
 }  // namespace monolith

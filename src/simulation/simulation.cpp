@@ -121,6 +121,7 @@ void Simulation::Impl::initialise() {
   for (auto& field : state.coupled.velocity) field.assign(grid.lattice.size, 0.0);
   for (auto& field : state.known) field.assign(grid.lattice.size, 1);
   state.coupled.pressure = hydrostaticPressure(grid, state.surface[0], scene.liquid.density, scene.gravity);
+  state.departed.assign(state.bodies.size(), 0);
   state.stuck_twists.assign(state.bodies.size(), Vector6d::Zero());
   state.coupled.liquid.assign(state.bodies.size(), Wrench());
   state.coupled.contact.assign(state.bodies.size(), Wrench());
@@ -206,6 +207,17 @@ void Simulation::Impl::measureState(StepReport& step) const {
   }
 }
 
+// What is prescribed to move out of the tank does: said once, as the liquid's volume does not tell why it changes.
+void Simulation::Impl::tellDepartures(StepReport& step) {
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+    if (state.departed[b]) continue;
+    const std::string line = describeDeparture(state.bodies[b], walls, kMostIntrusion * grid.h);
+    if (line.empty()) continue;
+    state.departed[b] = 1;
+    step.warning += (step.warning.empty() ? "" : "\n") + line;
+  }
+}
+
 // What the state alone tells of the next step's model, or of the last one's.
 void Simulation::Impl::tellModel(ModelChoice& model) const {
   model.liquid = hasLiquid();
@@ -285,6 +297,7 @@ StepReport Simulation::step() {
       m.state.time = static_cast<double>(m.state.step) * m.scene.time_step;
       m.measureLiquidMotion(step);
       m.measureState(step);
+      m.tellDepartures(step);
     } else {
       if (step.substeps > 1) std::swap(m.state, m.before);
       m.state.mean_liquid = last_liquid;

@@ -20,6 +20,7 @@ namespace monolith {
 // Steps of backward Euler after a state that was set: one in which the velocity jumps, and one for the next to
 // continue.
 constexpr int kStepsAfterSet = 2;
+constexpr double kMostIntrusion = 0.5;  // of a cell, that bodies may come into walls or each other
 
 // Adds the time until it goes out of scope.
 class StageClock {
@@ -42,6 +43,7 @@ struct SimulationState {
   FaceMask known;
   FaceField<double> acceleration;                 // m/s^2, of the liquid's particles, mean over the last sub-step
   std::vector<Vector6d> body_acceleration;        // likewise
+  std::vector<char> departed;                     // bodies whose departure from the tank has been told
   std::vector<Vector6d> stuck_twists;             // of the liquid that sticks to each body, set or not since
   std::vector<Wrench> mean_liquid, mean_contact;  // over the last output step
   double liquid_speed = 0.0;                      // m/s, no component of the velocity is larger
@@ -92,6 +94,7 @@ struct Simulation::Impl {
   void moveLiquid(const StepWeights& w, StepReport& report);
   void enterImages();
   void prepareGeometry();
+  void tellDepartures(StepReport& report);
   void measureLiquidMotion(StepReport& report);
   void measureState(StepReport& report) const;
   void tellModel(ModelChoice& model) const;

@@ -31,6 +31,7 @@ struct ModelChoice {  // what the last sub-step modelled, chosen from the state;
 struct StepReport {
   SolveStatus status = SolveStatus::kNotRun;
   std::string message;  // empty if all went well
+  std::string warning;  // of a step that went well what whoever runs it should know, once; or empty
   long step = 0;        // output steps since the start
   double time = 0.0;    // s, simulated, after the step
   int substeps = 0;

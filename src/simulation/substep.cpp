@@ -22,7 +22,6 @@ constexpr double kSteepestVelocity = 0.03;
 constexpr double kSteepestRate = 0.15;
 // By which the surface may be faster than limitCutFaces() has it, of the same speed: what is limited is no wave.
 constexpr double kSlack = 0.18;
-constexpr double kMostIntrusion = 0.5;  // of a cell, that bodies may come into walls or each other
 // After the step of an impact one of backward Euler, for the next to continue.
 constexpr int kStepsAfterImpact = 1;
 constexpr double kRoundOff = 1e-6;  // of a length of sub-steps that just fits

@@ -576,6 +576,27 @@ TEST(Simulation, APaddleMayPressABodyAgainstAWall) {
   EXPECT_NEAR(simulation.bodyStates()[0].X_WB.translation()[0], 0.14, 0.05 * scene.tank.cell_width);
 }
 
+// The liquid's volume alone does not tell why it grows.
+TEST(Simulation, WhatIsPrescribedToLeaveTheTankIsToldOnce) {
+  Scene scene = tank(0.16, 1.0);
+  scene.bodies.push_back(boxBody("pad", {0.04, 0.04, 0.04}, 900.0, {0.13, 0.08, 0.08}));
+  scene.bodies[0].motion = BodyMotion::kPrescribed;
+  scene.bodies[0].prescribed.twist[0] = 0.2;
+  Simulation simulation(scene);
+  for (int round = 0; round < 2; ++round, simulation.reset()) {
+    std::vector<std::string> told;
+    while (simulation.bodyStates()[0].X_WB.translation()[0] < 0.19) {
+      const StepReport r = simulation.step();
+      ASSERT_TRUE(r.committed()) << r.message;
+      if (r.warning.empty()) continue;
+      told.push_back(r.warning);
+      EXPECT_LT(simulation.bodyStates()[0].X_WB.translation()[0], 0.15) << "as soon as it is more than half a cell";
+    }
+    ASSERT_EQ(told.size(), 1U);
+    EXPECT_NE(told[0].find("body 'pad' moves out of the tank through its wall +x"), std::string::npos) << told[0];
+  }
+}
+
 // Each number is finite, the velocity of the centre of mass beside the body's origin is not.
 TEST(Simulation, ASpinTooLargeForANumberAtTheCentreOfMassIsRefused) {
   Scene scene = tank(0.08, 1.0);
