@@ -19,7 +19,10 @@ namespace monolith {
 namespace {
 
 constexpr double kMeshResolution = 0.5;     // of a cell: spacing of the distance grid of meshes
-constexpr double kOverlapTolerance = 0.05;  // of a cell, at the start
+// Of a cell. What overlaps is pushed apart, and the speed that it takes stays: at the start no more than round-off of
+// poses; of a state that is set, which may be one that was simulated, as much as contacts leave.
+constexpr double kOverlapAtStart = 1e-3;
+constexpr double kOverlapTolerance = 0.05;
 constexpr int kLargestSubsteps = 64;
 // Sub-steps in a period of what oscillates as prescribed: of fewer the velocities do not tell how it moves.
 constexpr double kSubstepsInPeriod = 10.0;
@@ -105,7 +108,7 @@ void Simulation::Impl::initialise() {
     made.thinnest = resolution.thinnest;
     if (!resolution.warning.empty()) warnings.push_back(scene.source + ": " + resolution.warning);
   }
-  const std::string overlaps = describeOverlaps(state.bodies, walls, kOverlapTolerance * grid.h);
+  const std::string overlaps = describeOverlaps(state.bodies, walls, kOverlapAtStart * grid.h);
   if (!overlaps.empty())
     throw SceneError(scene.source + ": bodies overlap at the start, expected them apart:\n" + overlaps);
   detector = std::make_unique<ContactDetector>(state.bodies, walls);

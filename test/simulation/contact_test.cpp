@@ -282,17 +282,34 @@ TEST(Contact, IsFoundWhereATorqueOnlyBeginsToTurnABody) {
 // How fast it takes back what it is inside another does not depend on the step, and hardly stays.
 TEST(Contact, ABodySetIntoTheFloorRisesWithoutAJump) {
   for (const double dt : {0.0005, 0.002, 0.02}) {
-    Scene scene = meeting(boxBody("box", {0.2, 0.2, 0.2}, 1000.0, {1.0, 0.5, 0.099}),
+    Scene scene = meeting(boxBody("box", {0.2, 0.2, 0.2}, 1000.0, {1.0, 0.5, 0.1}),
                           boxBody("far", {0.1, 0.1, 0.1}, 1000.0, {0.3, 0.5, 0.5}));
     scene.gravity = {0.0, 0.0, -9.81};
     scene.time_step = dt;
     Simulation simulation(scene);
+    simulation.setBodyState(0, Eigen::Isometry3d(Eigen::Translation3d(1.0, 0.5, 0.099)), Eigen::Vector3d::Zero(),
+                            Eigen::Vector3d::Zero());
     double highest = 0.0;
     while (simulation.time() < 0.2) {
       ASSERT_TRUE(simulation.step().committed());
       highest = std::max(highest, simulation.bodyStates()[0].X_WB.translation()[2]);
     }
     EXPECT_LT(highest, 0.1 + 3e-4) << dt;
+  }
+}
+
+// What overlaps is pushed apart, and without gravity the speed that it takes stays: bodies start side by side.
+TEST(Contact, BodiesThatOverlapAtTheStartAreRefused) {
+  for (const double depth : {0.0, 1e-5, 1e-3}) {  // of 1 m, cells of 0.05 m
+    const Scene scene = meeting(boxBody("left", {0.2, 0.2, 0.2}, 1000.0, {0.8, 0.5, 0.5}),
+                                boxBody("right", {0.2, 0.2, 0.2}, 1000.0, {1.0 - depth, 0.5, 0.5}));
+    if (depth > 1e-4) {
+      EXPECT_THROW(Simulation{scene}, SceneError) << depth;
+      continue;
+    }
+    Simulation simulation(scene);
+    for (int i = 0; i < 5; ++i) ASSERT_TRUE(simulation.step().committed());
+    EXPECT_LT(std::abs(simulation.bodyStates()[1].velocity[0]), 0.5 * depth / 0.02 + 1e-9) << depth;
   }
 }
 
