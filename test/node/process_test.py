@@ -345,20 +345,27 @@ class ProcessTest(unittest.TestCase):
             code, output = self.finish()
             self.assertEqual(code, 0, output)
 
+    def launch(self, *arguments, **environment):
+        return subprocess.run([sys.executable, PACKAGE + '/launch/supervise.py', '-', PACKAGE + '/launch/tank.launch',
+                               'scene:=' + SMALL] + list(arguments), env=dict(os.environ, **environment),
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True, timeout=60,
+                              check=False)
+
     def testLaunchInANamespaceEndsAndRecords(self):
         folder = tempfile.mkdtemp()
         self.addCleanup(shutil.rmtree, folder)
         bag = os.path.join(folder, 'run.bag')
-        environment = dict(os.environ, ROS_NAMESPACE='/harbour/basin')
-        run = subprocess.run([sys.executable, PACKAGE + '/launch/supervise.py', '-', PACKAGE + '/launch/tank.launch',
-                              'scene:=' + SMALL, 'duration:=0.2', 'paced:=false', 'bag:=' + bag], env=environment,
-                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True, timeout=60,
-                             check=False)
+        run = self.launch('duration:=0.2', 'paced:=false', 'bag:=' + bag, ROS_NAMESPACE='/harbour/basin')
         self.assertEqual(run.returncode, 0, run.stdout)
         self.assertNotIn('nobody subscribed', run.stdout)
         with rosbag.Bag(bag) as recorded:
             topics = recorded.get_type_and_topic_info().topics
         self.assertIn('/harbour/basin/monolith_tank/body_states', topics)
+
+    def testLaunchThatCannotRecordEndsAndFails(self):
+        run = self.launch('duration:=30', 'bag:=/nowhere/run.bag')
+        self.assertEqual(run.returncode, 1, run.stdout)
+        self.assertIn('/nowhere/run.bag', run.stdout)
 
     def testLaunchFilesLoadAndExplainTheirArguments(self):
         files = glob.glob(PACKAGE + '/launch/*.launch')
