@@ -363,7 +363,8 @@ class ProcessTest(unittest.TestCase):
         self.assertIn('/harbour/basin/monolith_tank/body_states', topics)
 
     def testLaunchThatCannotRecordEndsAndFails(self):
-        run = self.launch('duration:=30', 'bag:=/nowhere/run.bag')
+        # Parameters stay: they are those of no other test's node.
+        run = self.launch('duration:=30', 'bag:=/nowhere/run.bag', ROS_NAMESPACE='/harbour/dock')
         self.assertEqual(run.returncode, 1, run.stdout)
         self.assertIn('/nowhere/run.bag', run.stdout)
 

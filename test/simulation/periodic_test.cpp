@@ -156,6 +156,7 @@ TEST(Periodic, BodiesThatOverlapAcrossTheBoundaryAreRefused) {
   } catch (const std::invalid_argument& error) {
     EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
   }
+}
 
 // Where the centre of mass of a prescribed body lies changes nothing, also farther than half a period from its end.
 TEST(Periodic, TheCentreOfMassOfAPrescribedBodyDoesNotMatter) {
