@@ -21,7 +21,7 @@ constexpr double kClosingTolerance = 1e-3;  // of a cell: a gap that closes by l
 constexpr double kSteepestVelocity = 0.03;
 constexpr double kSteepestRate = 0.15;
 // By which the surface may be faster than limitCutFaces() has it, of the same speed: what is limited is no wave.
-constexpr double kSlack = 0.18;
+constexpr double kSlack = 0.3;
 // After the step of an impact one of backward Euler, for the next to continue.
 constexpr int kStepsAfterImpact = 1;
 constexpr double kRoundOff = 1e-6;  // of a length of sub-steps that just fits
@@ -193,8 +193,12 @@ void Simulation::Impl::moveLiquid(const StepWeights& w, StepReport& step) {
   markResolved(system.problem(), state.known);
   limitSlivers(solids, grid, state.coupled.velocity, state.known);
   if (hasSurface()) {
-    limitCutFaces(system.problem().liquidMass(), solids, grid, kSlack * std::sqrt(scene.gravity.norm() * grid.h),
-                  state.coupled.velocity, state.known);
+    std::vector<double> body_speeds;
+    for (std::size_t b = 0; b < plan.bodies.size(); ++b) {
+      body_speeds.push_back(plan.bodies[b].fastestPoint(state.coupled.twists[b]));
+    }
+    limitCutFaces(system.problem().liquidMass(), solids, grid, body_speeds,
+                  kSlack * std::sqrt(scene.gravity.norm() * grid.h), state.coupled.velocity, state.known);
   }
   step.maximum_speed = largestSpeed(state.coupled.velocity);
   // As far as a trajectory of this step reaches, and no further than the tank.

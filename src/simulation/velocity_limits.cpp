@@ -15,6 +15,7 @@ constexpr double kSliver = 0.25;
 // than one: what is heavy is not driven by next to nothing. With less, cavities close with less of a jet; with more, or
 // with faces that are not whole for those around, energy comes of nothing where sub-steps are short.
 constexpr double kOfPart = 2.0;
+constexpr float kNextToBody = 1.5F;  // cells
 
 void fillHalos(const Lattice& l, FaceField<double>& velocity, FaceMask& known) {
   for (int a = 0; a < 3; ++a) {
@@ -54,7 +55,7 @@ void limitSlivers(const SolidFractions& solids, const MacGrid& grid, FaceField<d
 }
 
 void limitCutFaces(const FaceField<double>& liquid_mass, const SolidFractions& solids, const MacGrid& grid,
-                   double slack, FaceField<double>& velocity, FaceMask& known) {
+                   const std::vector<double>& body_speeds, double slack, FaceField<double>& velocity, FaceMask& known) {
   const Lattice& l = grid.lattice;
   fillHalos(l, velocity, known);
   const auto isCut = [&](int a, std::ptrdiff_t f) { return liquid_mass[a][f] < solids.fluid[a][f]; };
@@ -81,6 +82,8 @@ void limitCutFaces(const FaceField<double>& liquid_mass, const SolidFractions& s
           }
         }
         if (most < 0.0) continue;
+        const int owner = solids.owner[a][f];
+        if (owner >= 0 && solids.distance[a][f] < kNextToBody) most = std::max(most, body_speeds[owner]);
         const double part = liquid_mass[a][f] / solids.fluid[a][f];
         const double limit = std::max(1.0, kOfPart * part) * most + slack;
         u[f] = std::clamp(u[f], -limit, limit);

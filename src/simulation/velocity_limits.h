@@ -4,6 +4,8 @@
 // which a cavity closes gained twice what it fell by. What such a face passes on is therefore no more than what whole
 // faces next to it tell.
 
+#include <vector>
+
 #include "coupling/solid_fractions.h"
 #include "fluid/mac_grid.h"
 #include "solve/staggered_operator.h"
@@ -15,10 +17,10 @@ namespace monolith {
 void limitSlivers(const SolidFractions& solids, const MacGrid& grid, FaceField<double>& velocity, FaceMask& known);
 
 // Faces that the surface cuts, of whose fluid part `liquid_mass` is less than all: no faster than whole faces about the
-// two cells that they lie between are in any direction (by Bernoulli's law no more comes of what turns there), or than
-// two in a row tell when their velocity goes on straight, and by `slack` (m/s) more. Those that are more than half full
-// may be up to twice as fast.
+// two cells that they lie between are in any direction (by Bernoulli's law no more comes of what turns there), than two
+// in a row tell when their velocity goes on straight, or than a point of the body that they are next to
+// (body_speeds, m/s), and by `slack` (m/s) more. Those that are more than half full may be up to twice as fast.
 void limitCutFaces(const FaceField<double>& liquid_mass, const SolidFractions& solids, const MacGrid& grid,
-                   double slack, FaceField<double>& velocity, FaceMask& known);
+                   const std::vector<double>& body_speeds, double slack, FaceField<double>& velocity, FaceMask& known);
 
 }  // namespace monolith

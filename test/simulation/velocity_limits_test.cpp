@@ -9,6 +9,7 @@ namespace {
 
 // A box of cells without solids, liquid up to a part of the faces along z in layer kTop; below all is liquid.
 constexpr int kCells = 8, kTop = 5;
+constexpr double kBodySpeed = 4.0;  // m/s
 
 struct HalfFull {
   HalfFull() {
@@ -20,6 +21,7 @@ struct HalfFull {
       velocity[a].assign(grid.lattice.size, 0.0);
       solids.fluid[a].assign(grid.lattice.size, 1.0);
       solids.distance[a].assign(grid.lattice.size, 1.0F);
+      solids.owner[a].assign(grid.lattice.size, SolidFractions::kWall);
     }
     forEach([&](int a, std::ptrdiff_t f, int k) {
       mass[a][f] = k < kTop ? 1.0 : a == 2 && k == kTop ? 0.1 : 0.0;
@@ -38,7 +40,7 @@ struct HalfFull {
     }
   }
 
-  void limit(double slack) { limitCutFaces(mass, solids, grid, slack, velocity, known); }
+  void limit(double slack) { limitCutFaces(mass, solids, grid, {kBodySpeed}, slack, velocity, known); }
 
   MacGrid grid;
   SolidFractions solids;
@@ -69,6 +71,15 @@ TEST(VelocityLimits, ACutFaceIsNoFasterThanWhatFlowsTowardsIt) {
   box.limit(0.1);
   EXPECT_DOUBLE_EQ(box.velocity[2][jet], 2.5);
   EXPECT_DOUBLE_EQ(box.velocity[0][side], 2.4);
+}
+
+TEST(VelocityLimits, WhatABodyDrivesMayBeAsFastAsTheBody) {
+  HalfFull box;
+  const auto jet = box.grid.lattice.index(4, 4, kTop);
+  box.velocity[2][jet] = 9.6;
+  box.solids.owner[2][jet] = 0;
+  box.limit(0.0);
+  EXPECT_DOUBLE_EQ(box.velocity[2][jet], kBodySpeed);
 }
 
 TEST(VelocityLimits, WhereNothingWholeIsNearNothingIsLimited) {
