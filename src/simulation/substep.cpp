@@ -20,7 +20,7 @@ constexpr double kClosingTolerance = 1e-3;  // of a cell: a gap that closes by l
 // so much. Neither depends on the step, which would cost an order of accuracy.
 constexpr double kSteepestVelocity = 0.03;
 constexpr double kSteepestRate = 0.15;
-// By which the surface may be faster than limitCutFaces() has it, of the same speed: what is limited is no wave.
+// Of sqrt(gravity h), by which the surface may be faster than limitCutFaces() has it: what is limited is no wave.
 constexpr double kSlack = 0.3;
 // After the step of an impact one of backward Euler, for the next to continue.
 constexpr int kStepsAfterImpact = 1;

@@ -17,16 +17,23 @@ StepWeights bdf2Weights(double dt, double last_dt) {
   return {2, dt, (1.0 + r) / (1.0 + 2.0 * r) * dt, r / (1.0 + 2.0 * r)};
 }
 
-double stableWaveStep(double cell_width, double gravity, double kinematic_viscosity) {
+namespace {
+
+// dt with (omega dt)^2 = bound (1 + nu k^2 dt).
+double waveStep(double bound, double cell_width, double gravity, double kinematic_viscosity) {
   const double k = M_PI / cell_width;
-  const double damping = kinematic_viscosity * k * k, square = gravity * k;
-  return 2.0 * (damping + std::sqrt(damping * damping + square)) / square;
+  const double damping = bound * kinematic_viscosity * k * k, square = gravity * k;
+  return 0.5 * (damping + std::sqrt(damping * damping + 4.0 * bound * square)) / square;
+}
+
+}  // namespace
+
+double stableWaveStep(double cell_width, double gravity, double kinematic_viscosity) {
+  return waveStep(4.0, cell_width, gravity, kinematic_viscosity);
 }
 
 double longestWaveStep(double cell_width, double gravity, double kinematic_viscosity) {
-  const double k = M_PI / cell_width;
-  const double damping = kinematic_viscosity * k * k, square = gravity * k;
-  return (damping + std::sqrt(damping * damping + 2.0 * square)) / square;
+  return waveStep(2.0, cell_width, gravity, kinematic_viscosity);
 }
 
 }  // namespace monolith

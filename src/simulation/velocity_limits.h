@@ -1,8 +1,8 @@
 #pragma once
 // Faces that hold little liquid have the velocity that lets all flow through them, however large: next to nothing moves
-// with it. Carried on into faces that hold more, or into the air, it would be energy from nothing: a liter of water in
-// which a cavity closes gained twice what it fell by. What such a face passes on is therefore no more than what whole
-// faces next to it tell.
+// with it. Carried on into faces that hold more, or into the air, it would be energy from nothing: water in which a
+// cavity closes gained more than it fell by. What such a face passes on is therefore no more than what whole faces next
+// to it tell.
 
 #include <vector>
 

@@ -133,7 +133,13 @@ void expectOrders(const Scene& scene, double dt, double end, const Measure& meas
   EXPECT_LT(second.fine, 0.2 * first.fine);
 }
 
-TEST(TimeStepping, LiquidVelocityIsOfSecondOrder) { expectOrders(swingingBall(), 0.01, 0.16, liquidVelocities); }
+TEST(TimeStepping, LiquidVelocityIsOfSecondOrder) {
+  const Scene scene = swingingBall();
+  expectOrders(scene, 0.01, 0.16, liquidVelocities);
+  // Longer steps are more accurate than the order tells.
+  const std::vector<double> reference = runUntil(scene, TimeStepping::kBdf2, 0.02 / 16.0, 0.16, liquidVelocities);
+  EXPECT_LT(errors(scene, TimeStepping::kBdf2, 0.02, 0.16, liquidVelocities, reference).coarse, 8e-4);
+}
 
 TEST(TimeStepping, BodyVelocityIsOfSecondOrder) { expectOrders(sinkingBall(), 0.04, 0.16, bodyVelocity); }
 

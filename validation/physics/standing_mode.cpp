@@ -2,6 +2,7 @@
 
 #include <Eigen/Sparse>
 #include <Eigen/SparseLU>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vector>

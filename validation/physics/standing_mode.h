@@ -6,8 +6,8 @@
 //
 // u = 0 on the floor and the side walls. What boundary-layer theory leaves out, the corners in which the surface slides
 // along the walls, is in it: in a tank of 1 m and half as deep the damping is larger by 29 % at 1e-3 m^2/s and by 18 %
-// at 1e-4; without friction at the side walls the two agree to 1 %. Finite volumes on a staggered grid that gets finer
-// towards walls and surface, to 1/2000 of the length; a finer one changes the damping by 0.5 % at most.
+// at 1e-4; without friction at the side walls the two agree (test/validation/standing_mode_test.cpp). Finite volumes on
+// a staggered grid that gets finer towards walls and surface, to 1/2000 of the length.
 
 #include <complex>
 
