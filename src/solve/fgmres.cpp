@@ -117,22 +117,26 @@ double sumOfSquares(const float* x, std::ptrdiff_t size) {
   return sum;
 }
 
+void addPart(const Parts& parts, std::size_t p, double a, const std::vector<double>& z, double* to) {
+  const double* q = z.data() + parts[p].begin;
+  const std::ptrdiff_t size = parts[p].end - parts[p].begin;
+#pragma omp simd
+  for (std::ptrdiff_t i = 0; i < size; ++i) to[i] += a * q[i];
+}
+void addPart(const Parts& parts, std::size_t p, double a, const RoundedVector& z, double* to) {
+  z.addTo(parts, p, a, to);
+}
+
 // x += sum_v coefficient[v] z[v]
-template <class Real>
-void combine(const Parts& parts, const std::vector<std::vector<Real>>& z, const Eigen::VectorXd& coefficient,
+template <class Direction>
+void combine(const Parts& parts, const std::vector<Direction>& z, const Eigen::VectorXd& coefficient,
              const SplitVector& x) {
   const auto count = static_cast<double>(coefficient.size());
-  countWork(entries(parts), 2.0 * count, sizeof(Real) * count + 2.0 * sizeof(double));
+  const double bytes = std::is_same_v<Direction, RoundedVector> ? RoundedVector::bytes() : sizeof(double);
+  countWork(entries(parts), 2.0 * count, bytes * count + 2.0 * sizeof(double));
 #pragma omp parallel for schedule(static)
   for (std::size_t p = 0; p < parts.size(); ++p) {
-    const std::ptrdiff_t begin = parts[p].begin, size = parts[p].end - begin;
-    double* to = x.at(begin);
-    for (int v = 0; v < coefficient.size(); ++v) {
-      const Real* q = z[v].data() + begin;
-      const double a = coefficient[v];
-#pragma omp simd
-      for (std::ptrdiff_t i = 0; i < size; ++i) to[i] += a * q[i];
-    }
+    for (int v = 0; v < coefficient.size(); ++v) addPart(parts, p, coefficient[v], z[v], x.at(parts[p].begin));
   }
 }
 
@@ -157,20 +161,19 @@ void scaleInto(const Parts& parts, const std::vector<From>& x, double a, std::ve
 }  // namespace
 
 template <class Real>
-std::vector<Real>& Fgmres::Space<Real>::room(std::vector<std::vector<Real>>& vectors, std::size_t& clean,
-                                             std::size_t index, std::size_t size) {
-  if (vectors.size() <= index) vectors.resize(index + 1);
-  for (; clean <= index; ++clean) assignZero(size, vectors[clean]);
+std::vector<Real>& Fgmres::Space<Real>::basisRoom(std::size_t index, std::size_t size) {
+  if (basis.size() <= index) basis.resize(index + 1);
+  for (; clean <= index; ++clean) assignZero(size, basis[clean]);
   // The length of a border may have changed.
-  vectors[index].resize(size, Real(0));
-  return vectors[index];
+  basis[index].resize(size, Real(0));
+  return basis[index];
 }
 
 void Fgmres::forget() {
-  single_.clean_basis = single_.clean_directions = 0;
-  double_.clean_basis = double_.clean_directions = 0;
+  single_.clean = double_.clean = 0;
   v_single_.clear();
-  z_single_.clear();
+  single_.z.clear();
+  double_.z.clear();
 }
 
 void Fgmres::lose(const std::vector<std::ptrdiff_t>& begins, int length) {
@@ -179,19 +182,19 @@ void Fgmres::lose(const std::vector<std::ptrdiff_t>& begins, int length) {
     for (const auto begin : begins) std::fill_n(vector.begin() + begin, length, 0);
   };
   const auto clearAll = [&](auto& space) {
-    for (std::size_t i = 0; i < space.clean_basis; ++i) clear(space.basis[i]);
-    for (std::size_t i = 0; i < space.clean_directions; ++i) clear(space.directions[i]);
+    for (std::size_t i = 0; i < space.clean; ++i) clear(space.basis[i]);
+    clear(space.z);
   };
   clearAll(single_);
   clearAll(double_);
   clear(v_single_);
-  clear(z_single_);
 }
 
 const std::vector<float>& Fgmres::firstDirection(const KrylovMaps& maps, const SplitVector& x) {
   divide(maps);
   std::vector<float>& r = residualRoom(maps);
-  std::vector<float>& z = single_.directionRoom(0, maps.size);
+  std::vector<float>& z = single_.z;
+  z.resize(maps.size, 0.0F);
   maps.residual(x, r);
   maps.precondition(r, z);
   return z;
@@ -219,24 +222,27 @@ void Fgmres::divide(const KrylovMaps& maps) {
   appendParts(static_cast<std::ptrdiff_t>(maps.rest), static_cast<std::ptrdiff_t>(maps.size), parts_);
 }
 
-void Fgmres::extend(const KrylovMaps& maps, bool known, std::vector<float>& v, std::vector<float>& z,
+void Fgmres::extend(const KrylovMaps& maps, bool known, std::vector<float>& v, RoundedVector& kept,
                     std::vector<float>& w) {
+  std::vector<float>& z = single_.z;
   if (known) {
     maps.complete(v, z);
   } else {
     maps.precondition(v, z);
   }
+  kept.take(parts_, static_cast<std::ptrdiff_t>(maps.rest), z);
   maps.apply_single(z, w);
 }
 
 // firstDirection() is in single precision.
-void Fgmres::extend(const KrylovMaps& maps, bool, std::vector<double>& v, std::vector<double>& z,
+void Fgmres::extend(const KrylovMaps& maps, bool, std::vector<double>& v, std::vector<double>& kept,
                     std::vector<double>& w) {
+  std::vector<float>& z = single_.z;
   scaleInto(parts_, v, 1.0, v_single_);
-  z_single_.resize(v.size(), 0.0f);
-  maps.precondition(v_single_, z_single_);
-  scaleInto(parts_, z_single_, 1.0, z);
-  maps.apply(z, w);
+  maps.precondition(v_single_, z);
+  scaleInto(parts_, z, 1.0, double_.z);
+  maps.apply(double_.z, w);
+  kept = double_.z;
 }
 
 template <class Real>
@@ -256,10 +262,11 @@ int Fgmres::cycle(const KrylovMaps& maps, double norm, double goal, int most, bo
   while (used < most && !stop) {
     const int j = used;
     std::vector<Real>& w = space.basisRoom(j + 1, size);
-    std::vector<Real>& z = space.directionRoom(j, size);
+    if (space.directions.size() <= static_cast<std::size_t>(j)) space.directions.resize(j + 1);
+    single_.z.resize(size, 0.0F);
     const bool known = first_known && j == 0;
-    if (known) scaleInto(parts_, z, 1.0 / norm, z);
-    extend(maps, known, space.basis[j], z, w);
+    if (known) scaleInto(parts_, single_.z, 1.0 / norm, single_.z);
+    extend(maps, known, space.basis[j], space.directions[j], w);
     // Modified Gram-Schmidt, whose coefficients are h = (I + L)^-1 V^T w with L the strictly lower part of V^T V
     // (Swirydowicz et al. 2021, Numer. Linear Algebra Appl. 28, e2343): it reads the basis twice, not four times.
     Eigen::VectorXd h, row;

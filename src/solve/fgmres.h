@@ -3,16 +3,19 @@
 // residual b - A x is formed in double precision at each restart and kept in single, the correction is found on vectors
 // half as wide as x. b stays with whoever forms the residual; x may lie in pieces. Keeping the directions P^-1 v beside
 // the basis costs memory and pays: the operator sees their rounding, where a correction P^-1 (V y) formed at the end
-// carries that of a large, smooth pressure into the solution. Where single precision ends short of the goal, the cycles
-// that follow are in double; the preconditioner stays single. Minimises |b - A x|_2 over each cycle; the residual that
+// carries that of a large, smooth pressure into the solution. As it does, 16 bits an entry are enough for them
+// (rounded_vector.h). Where single precision ends short of the goal, the cycles that follow are in double; the
+// preconditioner stays single. Minimises |b - A x|_2 over each cycle; the residual that
 // it reports is the recomputed one.
 
 #include <Eigen/Dense>
 #include <functional>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 #include "solve/blocked_sum.h"
+#include "solve/rounded_vector.h"
 #include "solve/split_vector.h"
 
 namespace monolith {
@@ -76,20 +79,16 @@ class Fgmres {
   void lose(const std::vector<std::ptrdiff_t>& begins, int length);
 
  private:
+  // V and Z = P^-1 V.
   template <class Real>
   struct Space {
-    std::vector<std::vector<Real>> basis;               // V
-    std::vector<std::vector<Real>> directions;          // Z = P^-1 V
-    std::size_t clean_basis = 0, clean_directions = 0;  // of them: zero where there are no unknowns
+    using Direction = std::conditional_t<std::is_same_v<Real, float>, RoundedVector, std::vector<Real>>;
+    std::vector<std::vector<Real>> basis;
+    std::vector<Direction> directions;
+    std::size_t clean = 0;  // of the basis: zero where there are no unknowns
+    std::vector<Real> z;    // the newest direction; the same holds for it
 
-    std::vector<Real>& basisRoom(std::size_t index, std::size_t size) { return room(basis, clean_basis, index, size); }
-    std::vector<Real>& directionRoom(std::size_t index, std::size_t size) {
-      return room(directions, clean_directions, index, size);
-    }
-
-   private:
-    static std::vector<Real>& room(std::vector<std::vector<Real>>& vectors, std::size_t& clean, std::size_t index,
-                                   std::size_t size);
+    std::vector<Real>& basisRoom(std::size_t index, std::size_t size);
   };
 
   // How threads share vectors.
@@ -105,15 +104,15 @@ class Fgmres {
   template <class Real>
   int cycle(const KrylovMaps& maps, double norm, double goal, int most, bool first_known, Space<Real>& space,
             const SplitVector& x);
-  // z = P^-1 v, or only the rest of it; w = A z.
-  void extend(const KrylovMaps& maps, bool known, std::vector<float>& v, std::vector<float>& z, std::vector<float>& w);
-  void extend(const KrylovMaps& maps, bool known, std::vector<double>& v, std::vector<double>& z,
+  // z = P^-1 v, or only the rest of it; kept as a direction, and w = A z.
+  void extend(const KrylovMaps& maps, bool known, std::vector<float>& v, RoundedVector& kept, std::vector<float>& w);
+  void extend(const KrylovMaps& maps, bool known, std::vector<double>& v, std::vector<double>& kept,
               std::vector<double>& w);
 
   Space<float> single_;
   Space<double> double_;  // empty unless it was needed
   Parts parts_;
-  std::vector<float> v_single_, z_single_;
+  std::vector<float> v_single_;
 };
 
 }  // namespace monolith
