@@ -24,4 +24,12 @@ void CoarseLevels::built(const std::vector<RigidBody>& bodies, double viscous_nu
   for (const RigidBody& body : bodies) poses_.push_back({body.distance.get(), body.pose()});
 }
 
+void CoarseLevels::release() {
+  for (auto& level : levels) {
+    const Lattice lattice = level.lattice;
+    level = StaggeredCoefficients<float>();
+    level.lattice = lattice;
+  }
+}
+
 }  // namespace monolith

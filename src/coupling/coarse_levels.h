@@ -21,11 +21,14 @@ class CoarseLevels {
     lasting_ = false;
   }
   void forget() { lasting_ = false; }
+  // Whoever is to solve has made its own of these levels: of them only the lattices are kept.
+  void release();
 
   // Changes with every build.
   long generation() const { return generation_; }
 
-  std::vector<StaggeredCoefficients<float>> levels;  // [0] is left empty; one at least once they are built
+  // [0] is left empty; one at least once they are built.
+  std::vector<StaggeredCoefficients<float>> levels;
 
  private:
   struct Pose {

@@ -50,6 +50,7 @@ void PackedSystem::set(StepProblem& problem) {
   cells_.convertTo(cells_single_);
   flux_weight_ = std::max(1.0, 2.0 * p.viscous_number);
   preconditioner_.set(p, faces_single_, cells_single_, transfer_, impulse_);
+  problem.coarse.release();
   scale_.resize(bodySize());
   for (std::size_t i = 0; i < p.free.size(); ++i) scale_.segment<6>(6 * i) = p.twist_scale[i];
   columns_.set(p, scale_);

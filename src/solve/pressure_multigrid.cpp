@@ -38,66 +38,71 @@ Planes planesWith(std::uint8_t wanted, const std::vector<std::uint8_t>& kind, co
 
 }  // namespace
 
+float PressureMultigrid::FinestNetwork::toAir(std::ptrdiff_t c) const {
+  float sum = 0.0F;
+  for (int a = 0; a < 3; ++a) {
+    const auto sa = lattice.stride[a];
+    if (!pressed(c - sa)) sum += whole(a, c);
+    if (!pressed(c + sa)) sum += whole(a, c + sa);
+  }
+  return sum;
+}
+
+const std::vector<float>& PressureMultigrid::FinestNetwork::allConductances(int axis, std::vector<float>& room) const {
+  assignZero(lattice.size, room);
+  float* to = room.data();
+  forEachRow(lattice, [&](std::ptrdiff_t row, int, int) {
+    for (auto f = row; f < row + lattice.faceEnd(0); ++f) to[f] = conductance(axis, f);
+  });
+  fillHalo(lattice, room);
+  return room;
+}
+
+// First which cells have a pressure; those around tell the rest.
+void PressureMultigrid::findKinds(const Lattice& l, const std::vector<std::uint8_t>& has_pressure,
+                                  const FaceField<double>& open, const FaceField<float>& impulse,
+                                  const SteadyRows* steady) {
+  const bool keeps = levels_[0].blocks.wouldKeep(steady) && kinds_.size() == l.size;
+  const auto keepsRow = [&](int j, int k) { return keeps && steady->steady(j, k); };
+  if (!keeps) assignZero(l.size, kinds_);
+  const int width = l.faceEnd(0);
+  forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
+    if (keepsRow(j, k)) return;
+    for (auto c = row; c < row + width; ++c) kinds_[c] = has_pressure[c] ? kLiquid : kOutside;
+  });
+  const FinestNetwork network{l, open, impulse, kinds_};
+  forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
+    if (keepsRow(j, k)) return;
+    for (auto c = row; c < row + width; ++c) {
+      if (kinds_[c] == kLiquid) continue;
+      bool flows = false;
+      for (int a = 0; a < 3; ++a) flows = flows || network.whole(a, c) > 0.0F || network.whole(a, c + l.stride[a]) > 0.0F;
+      if (flows) kinds_[c] = kAir;
+    }
+  });
+  fillHalo(l, kinds_);
+}
+
 void PressureMultigrid::set(const Lattice& l, const std::vector<std::uint8_t>& has_pressure,
                             const FaceField<double>& open, const FaceField<float>& impulse, const SteadyRows* steady,
                             const std::vector<std::uint8_t>* smoothed) {
   std::size_t count = 1;
   for (Lattice c = l; canCoarsen(c); c = coarsened(c)) ++count;
   levels_.resize(count);
-  Network& network = finest_;
-  const bool keeps = levels_[0].blocks.wouldKeep(steady) && network.kind.size() == l.size;
-  const auto keepsRow = [&](int j, int k) { return keeps && steady->steady(j, k); };
-  if (!keeps) {
-    assignZero(l.size, network.to_air);
-    assignZero(l.size, network.kind);
-    assignZero(l.size, network.beyond);
-    for (auto& field : network.conductance) assignZero(l.size, field);
-  }
-  const int width = l.faceEnd(0);
-  // First which cells have a pressure; those around tell the rest.
-  forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
-    if (keepsRow(j, k)) return;
-    for (auto c = row; c < row + width; ++c) network.kind[c] = has_pressure[c] ? kLiquid : kOutside;
-  });
-  fillHalo(l, network.kind);
-  const auto conductance = [&](int a, std::ptrdiff_t f) { return static_cast<float>(open[a][f]) * impulse[a][f]; };
-  const auto pressed = [&](std::ptrdiff_t c) { return network.kind[c] == kLiquid; };
-  forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
-    if (keepsRow(j, k)) return;
-    for (auto c = row; c < row + width; ++c) {
-      float to_air = 0.0f;
-      for (int a = 0; a < 3; ++a) {
-        const auto sa = l.stride[a];
-        const float low = conductance(a, c), high = conductance(a, c + sa);
-        network.conductance[a][c] = pressed(c - sa) && pressed(c) ? low : 0.0f;
-        if (pressed(c)) {
-          if (!pressed(c - sa)) to_air += low;
-          if (!pressed(c + sa)) to_air += high;
-        }
-      }
-      network.to_air[c] = to_air;
-    }
-  });
-  forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
-    if (keepsRow(j, k)) return;
-    for (auto c = row; c < row + width; ++c) {
-      bool flows = false;
-      for (int a = 0; a < 3; ++a) flows = flows || conductance(a, c) > 0.0f || conductance(a, c + l.stride[a]) > 0.0f;
-      if (!pressed(c) && flows) network.kind[c] = kAir;
-      network.beyond[c] = network.kind[c] == kAir;
-    }
-  });
-  for (auto& field : network.conductance) fillHalo(l, field);
-  fillHalo(l, network.kind);
-  fillHalo(l, network.beyond);
+  findKinds(l, has_pressure, open, impulse, steady);
+  const FinestNetwork finest{l, open, impulse, kinds_};
   levels_[0].lattice = l;
-  finish(network, steady, smoothed, levels_[0]);
+  finish(finest, kinds_, steady, smoothed, levels_[0]);
   Network last;
   for (std::size_t index = 1; index < count; ++index) {
     Network coarse;
     levels_[index].lattice = coarsened(levels_[index - 1].lattice);
-    coarsen(levels_[index - 1].lattice, index == 1 ? network : last, levels_[index].lattice, coarse);
-    finish(coarse, nullptr, nullptr, levels_[index]);
+    if (index == 1) {
+      coarsen(l, finest, levels_[index].lattice, coarse);
+    } else {
+      coarsen(levels_[index - 1].lattice, last, levels_[index].lattice, coarse);
+    }
+    finish(coarse, coarse.kinds, nullptr, nullptr, levels_[index]);
     findExtension(coarse, levels_[index]);
     last = std::move(coarse);
   }
@@ -106,13 +111,16 @@ void PressureMultigrid::set(const Lattice& l, const std::vector<std::uint8_t>& h
   if (count > 1) invert(last, levels_.back());
 }
 
-void PressureMultigrid::coarsen(const Lattice& from, const Network& fine, const Lattice& l, Network& coarse) const {
+template <class SomeNetwork>
+void PressureMultigrid::coarsen(const Lattice& from, const SomeNetwork& fine, const Lattice& l,
+                                Network& coarse) const {
+  std::vector<float> room;
   for (int a = 0; a < 3; ++a) {
-    restrictFaces(from, a, fine.conductance[a], l, coarse.conductance[a]);
-    fillHalo(l, coarse.conductance[a]);
+    restrictFaces(from, a, fine.allConductances(a, room), l, coarse.conductances[a]);
+    fillHalo(l, coarse.conductances[a]);
   }
   coarse.to_air.assign(l.size, 0.0f);
-  coarse.kind.assign(l.size, kOutside);
+  coarse.kinds.assign(l.size, kOutside);
 #pragma omp parallel for schedule(static, kPlanesInTurn) if (from.size >= kSizeWorthSharing)
   for (int k = 0; k < l.n[2]; ++k) {
     for (int j = 0; j < l.n[1]; ++j) {
@@ -120,39 +128,42 @@ void PressureMultigrid::coarsen(const Lattice& from, const Network& fine, const 
         bool liquid = false, air = false, beyond = false;
         for (int child = 0; child < 8; ++child) {
           const auto cell = from.index(2 * i + (child & 1), 2 * j + ((child >> 1) & 1), 2 * k + (child >> 2));
-          liquid = liquid || fine.kind[cell] == kLiquid;
-          air = air || fine.kind[cell] == kAir;
-          beyond = beyond || fine.beyond[cell];
+          liquid = liquid || fine.kind(cell) == kLiquid;
+          air = air || fine.kind(cell) == kAir;
+          beyond = beyond || fine.beyond(cell);
         }
         const auto c = l.index(i, j, k);
-        coarse.kind[c] = liquid ? kLiquid : air ? kAir : kOutside;
+        coarse.kinds[c] = liquid ? kLiquid : air ? kAir : kOutside;
         if (!liquid) continue;
         float sum = 0.0f;
         for (int child = 0; child < 8; ++child) {
           const auto cell = from.index(2 * i + (child & 1), 2 * j + ((child >> 1) & 1), 2 * k + (child >> 2));
-          sum += liftedToAir(fine.to_air[cell], beyond);
+          const bool pressed = fine.kind(cell) == kLiquid;
+          sum += liftedToAir(pressed ? fine.toAir(cell) : 0.0F, beyond);
         }
         // Over eight children, with the same factor as over four faces.
         coarse.to_air[c] = 0.25f * sum;
       }
     }
   }
-  fillHalo(l, coarse.kind);
+  fillHalo(l, coarse.kinds);
   fillHalo(l, coarse.to_air);
-  coarse.beyond.assign(l.size, 0);
+  coarse.across.assign(l.size, 0);
   forEachRow(l, [&](std::ptrdiff_t row, int, int) {
     for (auto c = row; c < row + l.n[0]; ++c) {
-      if (coarse.kind[c] == kLiquid) continue;
-      coarse.beyond[c] = coarse.kind[c] == kAir;
+      if (coarse.kind(c) == kLiquid) continue;
+      coarse.across[c] = coarse.kind(c) == kAir;
       for (const auto s : l.stride) {
-        for (const auto other : {c - s, c + s}) coarse.beyond[c] |= coarse.to_air[other] > 0.0f;
+        for (const auto other : {c - s, c + s}) coarse.across[c] |= coarse.to_air[other] > 0.0f;
       }
     }
   });
 }
 
-void PressureMultigrid::finish(const Network& network, const SteadyRows* steady,
-                               const std::vector<std::uint8_t>* smoothed, Level& level) const {
+template <class SomeNetwork>
+void PressureMultigrid::finish(const SomeNetwork& network, const std::vector<std::uint8_t>& kinds,
+                               const SteadyRows* steady, const std::vector<std::uint8_t>* smoothed,
+                               Level& level) const {
   const Lattice& l = level.lattice;
   if (level.partial != (smoothed != nullptr)) {
     // Other blocks, and fields that held something beyond them.
@@ -163,18 +174,18 @@ void PressureMultigrid::finish(const Network& network, const SteadyRows* steady,
   if (!level.blocks.wouldKeep(steady) || level.mask.size() != l.size) assignZero(l.size, level.mask);
   if (&level != &levels_[0]) assignZero(l.size, level.b);
   level.blocks.build(l, {0}, [&](int, std::ptrdiff_t row, int width, auto& k) {
-    const std::uint8_t* kind = network.kind.data() + row;
+    const std::uint8_t* kind = kinds.data() + row;
     if (std::find(kind, kind + width, kLiquid) == kind + width) {
       std::fill_n(level.mask.data() + row, width, 0.0f);
       return false;
     }
     for (int i = 0; i < width; ++i) {
       const auto c = row + i;
-      const bool liquid = network.kind[c] == kLiquid;
-      float sum = k[kToAir][i] = liquid ? network.to_air[c] : 0.0f;
+      const bool liquid = kind[i] == kLiquid;
+      float sum = k[kToAir][i] = liquid ? network.toAir(c) : 0.0f;
       for (int a = 0; a < 3; ++a) {
-        sum += k[kLow + a][i] = liquid ? network.conductance[a][c] : 0.0f;
-        sum += k[kHigh + a][i] = liquid ? network.conductance[a][c + l.stride[a]] : 0.0f;
+        sum += k[kLow + a][i] = liquid ? network.conductance(a, c) : 0.0f;
+        sum += k[kHigh + a][i] = liquid ? network.conductance(a, c + l.stride[a]) : 0.0f;
       }
       level.mask[c] = k[kInverse][i] = sum > 0.0f ? 1.0f / sum : 0.0f;
     }
@@ -194,7 +205,7 @@ void PressureMultigrid::finish(const Network& network, const SteadyRows* steady,
   if (&level != &levels_[0]) level.build = -1;
   for (auto* field : {&level.x, &level.next, &level.d}) level.blocks.clear(0, level.build, *field);
   level.build = level.blocks.build();
-  level.planes = planesWith(kLiquid, network.kind, l);
+  level.planes = planesWith(kLiquid, kinds, l);
   // L is an M-matrix: the spectrum of D^-1 L lies in [0, 2].
   level.range.largest = 2.0f;
   level.range.ratio = kRatio;
@@ -207,7 +218,7 @@ void PressureMultigrid::findExtension(const Network& network, Level& level) cons
   level.extension.clear();
   std::vector<std::uint8_t> known(l.size);
 #pragma omp parallel for schedule(static) if (l.size >= kSizeWorthSharing)
-  for (std::size_t c = 0; c < l.size; ++c) known[c] = network.kind[c] != kOutside;
+  for (std::size_t c = 0; c < l.size; ++c) known[c] = network.kinds[c] != kOutside;
   for (int axis = 0; axis < 3; ++axis) {
     const std::vector<std::uint8_t> before = known;
     const auto s = l.stride[axis];
@@ -252,10 +263,10 @@ void PressureMultigrid::invert(const Network& network, const Level& level) {
   Eigen::MatrixXd L = Eigen::MatrixXd::Zero(count, count);
   for (Eigen::Index row = 0; row < count; ++row) {
     const std::ptrdiff_t c = coarsest_cells_[row];
-    L(row, row) += network.to_air[c] + kShift / level.mask[c];
+    L(row, row) += network.toAir(c) + kShift / level.mask[c];
     for (int a = 0; a < 3; ++a) {
       for (const auto& [face, other] : {std::pair(c, c - l.stride[a]), std::pair(c + l.stride[a], c + l.stride[a])}) {
-        const double g = network.conductance[a][face];
+        const double g = network.conductance(a, face);
         if (!(g > 0.0) || number[other] < 0) continue;
         L(row, row) += g;
         L(row, number[other]) -= g;

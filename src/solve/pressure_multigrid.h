@@ -59,17 +59,46 @@ class PressureMultigrid {
     long build = -1;  // of the blocks, that the fields have followed
     bool partial = false;  // blocks are where it is smoothed and next to that
   };
-  // What coarsening needs of a level.
+  // What coarsening needs of a level. beyond: cells across the surface, air, also where coarse cells have lost sight of
+  // it.
   struct Network {
-    FaceField<float> conductance;  // between cells with pressure
-    std::vector<float> to_air;     // per cell, sum over its faces
-    std::vector<std::uint8_t> kind;
-    std::vector<std::uint8_t> beyond;  // cells across the surface: air, also where coarse cells have lost sight of it
+    FaceField<float> conductances;  // between cells with pressure
+    std::vector<float> to_air;      // per cell, sum over its faces
+    std::vector<std::uint8_t> kinds, across;
+
+    float conductance(int axis, std::ptrdiff_t face) const { return conductances[axis][face]; }
+    float toAir(std::ptrdiff_t cell) const { return to_air[cell]; }
+    Kind kind(std::ptrdiff_t cell) const { return static_cast<Kind>(kinds[cell]); }
+    bool beyond(std::ptrdiff_t cell) const { return across[cell] != 0; }
+    const std::vector<float>& allConductances(int axis, std::vector<float>&) const { return conductances[axis]; }
+  };
+  // The same of the finest level, where all but the kinds follows from what there is.
+  struct FinestNetwork {
+    const Lattice& lattice;
+    const FaceField<double>& open;
+    const FaceField<float>& impulse;
+    const std::vector<std::uint8_t>& kinds;
+
+    float whole(int axis, std::ptrdiff_t face) const {
+      return static_cast<float>(open[axis][face]) * impulse[axis][face];
+    }
+    bool pressed(std::ptrdiff_t cell) const { return kinds[cell] == kLiquid; }
+    float conductance(int axis, std::ptrdiff_t face) const {
+      return pressed(face - lattice.stride[axis]) && pressed(face) ? whole(axis, face) : 0.0F;
+    }
+    float toAir(std::ptrdiff_t cell) const;
+    Kind kind(std::ptrdiff_t cell) const { return static_cast<Kind>(kinds[cell]); }
+    bool beyond(std::ptrdiff_t cell) const { return kinds[cell] == kAir; }
+    const std::vector<float>& allConductances(int axis, std::vector<float>& room) const;
   };
 
-  void coarsen(const Lattice& from, const Network& fine, const Lattice& l, Network& coarse) const;
-  void finish(const Network& network, const SteadyRows* steady, const std::vector<std::uint8_t>* smoothed,
-              Level& level) const;
+  void findKinds(const Lattice& lattice, const std::vector<std::uint8_t>& has_pressure, const FaceField<double>& open,
+                 const FaceField<float>& impulse, const SteadyRows* steady);
+  template <class SomeNetwork>
+  void coarsen(const Lattice& from, const SomeNetwork& fine, const Lattice& l, Network& coarse) const;
+  template <class SomeNetwork>
+  void finish(const SomeNetwork& network, const std::vector<std::uint8_t>& kinds, const SteadyRows* steady,
+              const std::vector<std::uint8_t>* smoothed, Level& level) const;
   void findExtension(const Network& network, Level& level) const;
   void invert(const Network& network, const Level& level);
   void residual(Level& level, float* r) const;
@@ -77,7 +106,7 @@ class PressureMultigrid {
   void descend(std::size_t index);
 
   std::vector<Level> levels_;
-  Network finest_;  // kept for its memory
+  std::vector<std::uint8_t> kinds_;  // of the finest level
   std::vector<std::int32_t> coarsest_cells_;  // if few enough to be solved directly
   Eigen::MatrixXf inverse_;
 };
