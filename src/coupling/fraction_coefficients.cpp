@@ -102,20 +102,17 @@ FractionGeometry sampleFractions(const MacGrid& grid, const std::vector<RigidBod
 void buildFractionCoefficients(const Lattice& l, const FractionGeometry& g, double viscous_number,
                                StaggeredCoefficients<double>& out, StrainScales* strain) {
   out.resize(l, viscous_number > 0.0);
+  for (auto& field : out.own_fluid) field.assign(l.size, 1.0);
   const int width = l.faceEnd(0);
   forEachRow(l, [&](std::ptrdiff_t row, int, int) {
     for (auto f = row; f < row + width; ++f) {
       for (int a = 0; a < 3; ++a) {
         if (g.fluid[a][f] < kLeastFluid || g.liquid.face[a][f] < kLeastLiquid) continue;
         out.mass[a][f] = g.liquid.face[a][f] / g.fluid[a][f];
-        out.open[a][f] = 1.0;
       }
     }
   });
-  for (int a = 0; a < 3; ++a) {
-    fillHalo(l, out.mass[a]);
-    fillHalo(l, out.open[a]);
-  }
+  for (auto& field : out.mass) fillHalo(l, field);
   const auto isOpen = [&](int a, std::ptrdiff_t f) { return out.mass[a][f] > 0.0; };
   const auto isClosed = [&](int a, std::ptrdiff_t f) { return g.fluid[a][f] < kLeastFluid; };
   // Open, but without inertia: its velocity is whatever costs nothing.

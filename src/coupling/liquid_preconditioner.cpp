@@ -60,7 +60,7 @@ void LiquidPreconditioner::set(const StepProblem& problem, const FaceBlocks<floa
   } else {
     permeability_.forget();
   }
-  pressure_.set(l, problem.coefficients.has_pressure, problem.coefficients.open, *impulse_, &problem.steady,
+  pressure_.set(l, problem.coefficients.has_pressure, problem.coefficients.fluid(), *impulse_, &problem.steady,
                 holding ? &permeability_.sharp() : nullptr);
   cells.clear(0, build_, g_);
   build_ = cells.build();

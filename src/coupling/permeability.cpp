@@ -31,10 +31,10 @@ void Permeability::set(const StepProblem& problem, double largest_number, Veloci
   }
   share_.resize(l.size);
   for (int a = 0; a < 3; ++a) {
-    const auto &mass = problem.coefficients.mass[a], &open = problem.coefficients.open[a];
+    const auto &mass = problem.coefficients.mass[a], &fluid = problem.coefficients.fluid()[a];
     assignZero(l.size, impulse_[a]);
 #pragma omp parallel for simd schedule(static)
-    for (std::size_t f = 0; f < l.size; ++f) share_[f] = mass[f] > 0.0 ? static_cast<float>(open[f] / mass[f]) : 0.0f;
+    for (std::size_t f = 0; f < l.size; ++f) share_[f] = mass[f] > 0.0 ? static_cast<float>(fluid[f] / mass[f]) : 0.0f;
     prolongateFaces(level.lattice, a, coarse_[a].data(), l, allPlanes(l), share_.data(), impulse_[a].data());
 #pragma omp parallel for simd schedule(static)
     for (std::size_t f = 0; f < l.size; ++f) impulse_[a][f] = std::min(free[a][f], impulse_[a][f]);
@@ -48,9 +48,9 @@ void Permeability::set(const StepProblem& problem, double largest_number, Veloci
     for (int a = 0; a < 3; ++a) {
       for (const auto at : {row, row + l.stride[a]}) {
         const float* impulse = free[a].data() + at;
-        const double* open = problem.coefficients.open[a].data() + at;
+        const double* fluid = problem.coefficients.fluid()[a].data() + at;
         for (int i = 0; i < l.n[0]; ++i) {
-          const float conductance = static_cast<float>(open[i]) * impulse[i];
+          const float conductance = static_cast<float>(fluid[i]) * impulse[i];
           out[i] |= !(conductance > kLeastOpen && conductance < kMostOpen);
         }
       }

@@ -64,7 +64,7 @@ void findDrifts(const Lattice& l, const BodyRows& rows, const std::vector<char>&
 
 std::vector<PressureRegion> findPressureRegions(const StaggeredCoefficients<double>& c, const BodyRows& rows,
                                                 const std::vector<char>& moves) {
-  ConnectedRuns runs(c.lattice, c.has_pressure, c.open);
+  ConnectedRuns runs(c.lattice, c.has_pressure, {c.open(0), c.open(1), c.open(2)});
   std::vector<int> id_of;
   std::vector<PressureRegion> regions(runs.numberRegions(id_of));
   for (PressureRegion& region : regions) region.sealed = true;

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "coupling/stokes_samples.h"
 #include "solve/staggered_transfer.h"
+#include "solve/whole_fields.h"
 
 namespace monolith {
 namespace {
@@ -63,8 +65,9 @@ void buildSamples(const SampleBuilder& samples, double viscous_number, std::ptrd
     }
     if (samples.kind(a, c) == FaceKind::kSliver) {
       // The film between the face's open part and the surface is about half the open part thick.
-      out.drag[a][c] = 4.0 * viscous_number / std::max(out.open[a][c], kLeastSliver);
-      if (strain != nullptr) strain->drag[a][c] = 2.0 / std::max(out.open[a][c], kLeastSliver);
+      const double open = std::max(out.open(a)[c], kLeastSliver);
+      out.drag[a][c] = 4.0 * viscous_number / open;
+      if (strain != nullptr) strain->drag[a][c] = 2.0 / open;
     }
   }
   for (int p = 0; p < 3; ++p) {
@@ -152,6 +155,7 @@ void StrainScales::fillHalos(const Lattice& l) {
 void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double viscous_number,
                        StaggeredCoefficients<double>& out, FaceKinds& kinds, StrainScales* strain,
                        const SteadyRows* steady) {
+  out.others_fluid = geometry.fluid;
   prepareToFill(l, viscous_number > 0.0, out);
   const auto keeps = [&](int j, int k) { return steady != nullptr && steady->steady(j, k); };
   const auto& liquid = *geometry.liquid_distance;
@@ -162,22 +166,17 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
       const double* fluid = (*geometry.fluid)[a].data();
       for (auto f = row; f < row + width; ++f) {
         const double mass = fluid[f] * partOfSegment(liquid[f - l.stride[a]], liquid[f]);
-        const bool moves = mass > 0.0;
-        out.mass[a][f] = moves ? mass : 0.0;
-        out.open[a][f] = moves ? fluid[f] : 0.0;
+        out.mass[a][f] = mass > 0.0 ? mass : 0.0;
       }
     }
   });
-  for (int a = 0; a < 3; ++a) {
-    fillHalo(l, out.mass[a]);
-    fillHalo(l, out.open[a]);
-  }
+  for (auto& field : out.mass) fillHalo(l, field);
   const int end[3] = {l.n[0], l.n[1], l.n[2]};
   forEachHeavyRow(l, [&](std::ptrdiff_t row, int j, int k) {
     if (j >= end[1] || k >= end[2] || keeps(j, k)) return;
     for (auto c = row; c < row + end[0]; ++c) {
       double sum = 0.0;
-      for (int a = 0; a < 3; ++a) sum += out.open[a][c] + out.open[a][c + l.stride[a]];
+      for (int a = 0; a < 3; ++a) sum += out.open(a)[c] + out.open(a)[c + l.stride[a]];
       out.has_pressure[c] = isWet(liquid[c]) & (sum > 0.0);
     }
   });
@@ -185,10 +184,19 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
 
   if (strain != nullptr) strain->resize(l);
   findFaceKinds(l, geometry, out, steady, kinds);
+  for (int a = 0; a < 3; ++a) {
+    if (std::memchr(kinds[a].data(), static_cast<int>(FaceKind::kSliver), kinds[a].size()) == nullptr) {
+      out.drag[a] = std::vector<float>();
+    } else if (out.drag[a].empty()) {
+      assignZero(l.size, out.drag[a]);
+    }
+  }
   const SampleBuilder samples(l, geometry, kinds);
   forEachHeavyRow(l, [&](std::ptrdiff_t row, int j, int k) {
     if (keeps(j, k)) return;
-    for (auto& field : out.drag) std::fill_n(field.data() + row, width, 0.0);
+    for (auto& field : out.drag) {
+      if (!field.empty()) std::fill_n(field.data() + row, width, 0.0F);
+    }
     thread_local std::vector<std::uint8_t> mark;
     samples.markCells(row, width, mark);
     buildPlainRow(samples, viscous_number, row, mark, out);
@@ -199,7 +207,7 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
   });
   for (int a = 0; a < 3; ++a) {
     fillHalo(l, out.normal[a]);
-    fillHalo(l, out.drag[a]);
+    if (!out.drag[a].empty()) fillHalo(l, out.drag[a]);
     for (int s = 0; s < 2; ++s) fillHalo(l, out.shear[a][s]);
   }
   if (strain != nullptr) strain->fillHalos(l);

@@ -75,13 +75,13 @@ class Rows {
   // Rows of -C, which have no weight.
   void addPressures() {
     out_.stresses = count_;
-    const auto& open = coefficients_.open;
     std::vector<int> number(lattice_.size, -1);
     forEachIndex(lattice_, [&](std::ptrdiff_t s) {
       if (!coefficients_.has_pressure[s]) return;
       for (int a = 0; a < 3; ++a) {
-        add(a, s + lattice_.stride[a], -open[a][s + lattice_.stride[a]]);
-        add(a, s, open[a][s]);
+        const OpenParts<double> open = coefficients_.open(a);
+        add(a, s + lattice_.stride[a], -open[s + lattice_.stride[a]]);
+        add(a, s, open[s]);
       }
       number[s] = count_++;
       out_.pressure_cells.push_back(s);

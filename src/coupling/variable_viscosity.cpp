@@ -257,10 +257,10 @@ void VariableViscosity::apply(const ViscosityField& field, StepProblem& problem)
       c.normal[a][i] = normal_[a][i] * ratio[i];
       c.shear[a][0][i] = shear_[a][0][i] * root;
       c.shear[a][1][i] = shear_[a][1][i] * root;
-      c.drag[a][i] = drag_[a][i] * film[i];
+      if (!drag_[a].empty()) c.drag[a][i] = drag_[a][i] * film[i];
     }
     fillHalo(l, c.normal[a]);
-    fillHalo(l, c.drag[a]);
+    if (!drag_[a].empty()) fillHalo(l, c.drag[a]);
     for (int s = 0; s < 2; ++s) fillHalo(l, c.shear[a][s]);
     scaleRows(shear_rows_[a], applied_.data() + (1 + a) * size, problem.rows.shear[a]);
   }
@@ -304,13 +304,13 @@ void VariableViscosity::scaleCoarse(const ViscosityField& field, StepProblem& pr
       forEachRow(l, [&](std::ptrdiff_t row, int, int) {
         for (auto i = row; i < row + l.faceEnd(0); ++i) {
           c.normal[a][i] *= static_cast<float>(std::exp(to[i]));
-          c.drag[a][i] *= static_cast<float>(std::exp(0.5 * (to[i] + to[i - l.stride[a]])));
+          if (!c.drag[a].empty()) c.drag[a][i] *= static_cast<float>(std::exp(0.5 * (to[i] + to[i - l.stride[a]])));
           const double edge = 0.25 * (to[i] + to[i - first] + to[i - second] + to[i - first - second]);
           for (int s = 0; s < 2; ++s) c.shear[a][s][i] *= static_cast<float>(std::exp(0.5 * edge));
         }
       });
       fillHalo(l, c.normal[a]);
-      fillHalo(l, c.drag[a]);
+      if (!c.drag[a].empty()) fillHalo(l, c.drag[a]);
       for (int s = 0; s < 2; ++s) fillHalo(l, c.shear[a][s]);
     }
   }

@@ -33,7 +33,9 @@ FreeSurface::Pools FreeSurface::findPools(const std::vector<double>& cell_fluid,
   std::vector<std::uint8_t> has(l.size);
 #pragma omp parallel for simd schedule(static)
   for (std::size_t c = 0; c < l.size; ++c) has[c] = (distance_[c] < 0.0) & (cell_fluid[c] > 0.0);
-  ConnectedRuns runs(l, has, open);
+  // Through all of them, whether there is liquid or not.
+  const auto part = [&](int a) { return OpenParts<double>{open[a].data(), open[a].data()}; };
+  ConnectedRuns runs(l, has, {part(0), part(1), part(2)});
   std::vector<int> region_of;
   const int regions = runs.numberRegions(region_of);
   Pools out;

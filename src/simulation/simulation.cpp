@@ -268,7 +268,11 @@ StepReport Simulation::step() {
       // the memory of a copy is given back.
       if (!saved) {
         saved = left - dt > 1e-9 * m.scene.time_step;
-        m.before = saved ? m.state : SimulationState();
+        if (saved) {
+          m.before.save(m.grid.lattice, m.state);
+        } else {
+          m.before.clear();
+        }
       }
       const bool predicted = m.predicted;
       const StepReport so_far = step;
@@ -302,7 +306,7 @@ StepReport Simulation::step() {
       m.measureState(step);
       m.tellDepartures(step);
     } else {
-      if (step.substeps > 1) std::swap(m.state, m.before);
+      if (step.substeps > 1) m.before.restore(m.state);
       m.state.mean_liquid = last_liquid;
       m.state.mean_contact = last_contact;
       putBack(was_predicted);

@@ -1,5 +1,5 @@
 #pragma once
-// What the sources of Simulation share: its state and its parts.
+// What the sources of Simulation share: its parts.
 
 #include <chrono>
 #include <memory>
@@ -12,14 +12,13 @@
 #include "simulation/contact_laws.h"
 #include "simulation/liquid_state.h"
 #include "simulation/non_newtonian.h"
+#include "simulation/saved_state.h"
 #include "simulation/simulation.h"
+#include "simulation/simulation_state.h"
 #include "simulation/time_stepping.h"
 
 namespace monolith {
 
-// Steps of backward Euler after a state that was set: one in which the velocity jumps, and one for the next to
-// continue.
-constexpr int kStepsAfterSet = 2;
 constexpr double kMostIntrusion = 0.5;  // of a cell, that bodies may come into walls or each other
 
 // Adds the time until it goes out of scope.
@@ -31,29 +30,6 @@ class StageClock {
  private:
   double& total_;
   std::chrono::steady_clock::time_point start_;
-};
-
-// Everything that a step may change, and that an uncommitted step must leave.
-struct SimulationState {
-  double time = 0.0;
-  long step = 0;
-  std::vector<RigidBody> bodies;
-  std::vector<FreeSurface> surface;  // exactly one; a vector because it has no default
-  CoupledState coupled;
-  FaceMask known;
-  FaceField<double> acceleration;                 // m/s^2, of the liquid's particles, mean over the last sub-step
-  std::vector<Vector6d> body_acceleration;        // likewise
-  std::vector<char> departed;                     // bodies whose departure from the tank has been told
-  std::vector<Vector6d> stuck_twists;             // of the liquid that sticks to each body, set or not since
-  std::vector<Wrench> mean_liquid, mean_contact;  // over the last output step
-  double liquid_speed = 0.0;                      // m/s, no component of the velocity is larger
-  double fastest = 0.0;                           // m/s, see typicalSpeed()
-  double last_dt = 0.0;                           // s, of the last sub-step
-  int euler_steps = kStepsAfterSet;               // sub-steps of backward Euler that are due
-  std::size_t substeps = 0;
-  bool started = false;
-  double typical_viscosity = 0.0;  // Pa s; of a non-Newtonian liquid that of the last solve
-  double liquid_energy = 0.0;      // J, kinetic, after the last output step
 };
 
 struct Simulation::Impl {
@@ -128,7 +104,7 @@ struct Simulation::Impl {
   double sticking_energy = 0.0;  // J
   Eigen::Vector3d sticking_momentum = Eigen::Vector3d::Zero();
   SimulationState state;
-  SimulationState before;  // the last output step, if this one takes several sub-steps
+  SavedState before;  // the last output step, if this one takes several sub-steps
   StepReport report;
 };
 

@@ -16,7 +16,7 @@ void addJoint(int here, int there, double open, std::vector<std::pair<int, int>>
 }  // namespace
 
 ConnectedRuns::ConnectedRuns(const Lattice& lattice, const std::vector<std::uint8_t>& has,
-                             const FaceField<double>& open)
+                             const std::array<OpenParts<double>, 3>& open)
     : l_(lattice) {
   const Cells cells{has, open};
   const std::vector<int> first = number(cells);
@@ -46,7 +46,7 @@ std::vector<int> ConnectedRuns::number(const Cells& cells) {
   forEachRow(l_, [&](std::ptrdiff_t row, int j, int k) {
     if (j >= l_.n[1] || k >= l_.n[2]) return;
     const std::uint8_t* has = cells.has.data() + row;
-    const double* open = cells.open[0].data() + row;
+    const OpenParts<double> open = cells.open[0] + row;
     int some = has[0] != 0, closed = has[0] == 0;
 #pragma omp simd reduction(+ : some, closed)
     for (int i = 1; i < l_.n[0]; ++i) {

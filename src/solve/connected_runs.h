@@ -17,7 +17,8 @@ namespace monolith {
 class ConnectedRuns {
  public:
   // Of the cells where `has` is not 0, through faces where `open` is more than 0. They must outlive the constructor.
-  ConnectedRuns(const Lattice& lattice, const std::vector<std::uint8_t>& has, const FaceField<double>& open);
+  ConnectedRuns(const Lattice& lattice, const std::vector<std::uint8_t>& has,
+                const std::array<OpenParts<double>, 3>& open);
 
   int count() const { return sets_.count(); }
   // The run of a cell; -1: it is none of them.
@@ -54,7 +55,7 @@ class ConnectedRuns {
   using Joint = std::pair<int, int>;  // two runs; or one and kToOthers
   struct Cells {
     const std::vector<std::uint8_t>& has;
-    const FaceField<double>& open;
+    const std::array<OpenParts<double>, 3>& open;
   };
 
   RowKind kindOf(std::ptrdiff_t row) const { return kind_[row / l_.stride[1]]; }

@@ -60,7 +60,7 @@ const std::vector<float>& PressureMultigrid::FinestNetwork::allConductances(int 
 
 // First which cells have a pressure; those around tell the rest.
 void PressureMultigrid::findKinds(const Lattice& l, const std::vector<std::uint8_t>& has_pressure,
-                                  const FaceField<double>& open, const FaceField<float>& impulse,
+                                  const FaceField<double>& fluid, const FaceField<float>& impulse,
                                   const SteadyRows* steady) {
   const bool keeps = levels_[0].blocks.wouldKeep(steady) && kinds_.size() == l.size;
   const auto keepsRow = [&](int j, int k) { return keeps && steady->steady(j, k); };
@@ -70,7 +70,7 @@ void PressureMultigrid::findKinds(const Lattice& l, const std::vector<std::uint8
     if (keepsRow(j, k)) return;
     for (auto c = row; c < row + width; ++c) kinds_[c] = has_pressure[c] ? kLiquid : kOutside;
   });
-  const FinestNetwork network{l, open, impulse, kinds_};
+  const FinestNetwork network{l, fluid, impulse, kinds_};
   forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
     if (keepsRow(j, k)) return;
     for (auto c = row; c < row + width; ++c) {
@@ -84,13 +84,13 @@ void PressureMultigrid::findKinds(const Lattice& l, const std::vector<std::uint8
 }
 
 void PressureMultigrid::set(const Lattice& l, const std::vector<std::uint8_t>& has_pressure,
-                            const FaceField<double>& open, const FaceField<float>& impulse, const SteadyRows* steady,
+                            const FaceField<double>& fluid, const FaceField<float>& impulse, const SteadyRows* steady,
                             const std::vector<std::uint8_t>* smoothed) {
   std::size_t count = 1;
   for (Lattice c = l; canCoarsen(c); c = coarsened(c)) ++count;
   levels_.resize(count);
-  findKinds(l, has_pressure, open, impulse, steady);
-  const FinestNetwork finest{l, open, impulse, kinds_};
+  findKinds(l, has_pressure, fluid, impulse, steady);
+  const FinestNetwork finest{l, fluid, impulse, kinds_};
   levels_[0].lattice = l;
   finish(finest, kinds_, steady, smoothed, levels_[0]);
   Network last;

@@ -21,10 +21,11 @@ namespace monolith {
 
 class PressureMultigrid {
  public:
-  // The network of the finest level: conductance open * impulse at each face, halos filled. The coarser ones follow
-  // from it. steady: rows in which nothing has changed since the last call. smoothed: cells that are smoothed on the
-  // finest level, the others only take what the coarser ones have found; null: all.
-  void set(const Lattice& lattice, const std::vector<std::uint8_t>& has_pressure, const FaceField<double>& open,
+  // The network of the finest level: conductance fluid * impulse at each face, halos filled; no impulse where there is
+  // no unknown. The coarser ones follow from it. steady: rows in which nothing has changed since the last call.
+  // smoothed: cells that are smoothed on the finest level, the others only take what the coarser ones have found; null:
+  // all.
+  void set(const Lattice& lattice, const std::vector<std::uint8_t>& has_pressure, const FaceField<double>& fluid,
            const FaceField<float>& impulse, const SteadyRows* steady = nullptr,
            const std::vector<std::uint8_t>* smoothed = nullptr);
 
@@ -75,12 +76,12 @@ class PressureMultigrid {
   // The same of the finest level, where all but the kinds follows from what there is.
   struct FinestNetwork {
     const Lattice& lattice;
-    const FaceField<double>& open;
+    const FaceField<double>& fluid;
     const FaceField<float>& impulse;
     const std::vector<std::uint8_t>& kinds;
 
     float whole(int axis, std::ptrdiff_t face) const {
-      return static_cast<float>(open[axis][face]) * impulse[axis][face];
+      return static_cast<float>(fluid[axis][face]) * impulse[axis][face];
     }
     bool pressed(std::ptrdiff_t cell) const { return kinds[cell] == kLiquid; }
     float conductance(int axis, std::ptrdiff_t face) const {
@@ -92,7 +93,7 @@ class PressureMultigrid {
     const std::vector<float>& allConductances(int axis, std::vector<float>& room) const;
   };
 
-  void findKinds(const Lattice& lattice, const std::vector<std::uint8_t>& has_pressure, const FaceField<double>& open,
+  void findKinds(const Lattice& lattice, const std::vector<std::uint8_t>& has_pressure, const FaceField<double>& fluid,
                  const FaceField<float>& impulse, const SteadyRows* steady);
   template <class SomeNetwork>
   void coarsen(const Lattice& from, const SomeNetwork& fine, const Lattice& l, Network& coarse) const;

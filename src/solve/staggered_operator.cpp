@@ -50,7 +50,6 @@ void applyMomentum(const StaggeredCoefficients<Real>& c, const FaceField<Real>& 
         for (int i = 0; i < width; ++i) out[i] = m[i] * u[i];
         continue;
       }
-      const float* d = c.drag[a].data() + row;
       const Real* s = stress.normal[a].data() + row;
       const auto sa = l.stride[a];
       // The two shear pairs that component a takes part in; `first` tells in which place.
@@ -68,8 +67,12 @@ void applyMomentum(const StaggeredCoefficients<Real>& c, const FaceField<Real>& 
       for (int i = 0; i < width; ++i) {
         const Real force = s[i - sa] - s[i] + kp[i] * tp[i] - kp[i + sp] * tp[i + sp] + kq[i] * tq[i] -
                            kq[i + sq] * tq[i + sq];
-        out[i] = m[i] > Real(0) ? (m[i] + d[i]) * u[i] + force : Real(0);
+        out[i] = m[i] > Real(0) ? m[i] * u[i] + force : Real(0);
       }
+      if (c.drag[a].empty()) continue;
+      const float* d = c.drag[a].data() + row;
+#pragma omp simd
+      for (int i = 0; i < width; ++i) out[i] += m[i] > Real(0) ? d[i] * u[i] : Real(0);
     }
   });
 }
@@ -81,7 +84,7 @@ void computeDivergence(const StaggeredCoefficients<Real>& c, const FaceField<Rea
   const int width = l.faceEnd(0);
   forEachRow(l, [&](std::ptrdiff_t row, int, int) {
     const Real *u = U[0].data() + row, *v = U[1].data() + row, *w = U[2].data() + row;
-    const Real *ou = c.open[0].data() + row, *ov = c.open[1].data() + row, *ow = c.open[2].data() + row;
+    const OpenParts<Real> ou = c.open(0) + row, ov = c.open(1) + row, ow = c.open(2) + row;
     const std::uint8_t* has = c.has_pressure.data() + row;
     Real* out = divergence.data() + row;
     const auto sy = l.stride[1];
@@ -103,7 +106,7 @@ void addPressureForce(const StaggeredCoefficients<Real>& c, const std::vector<Re
   forEachRow(l, [&](std::ptrdiff_t row, int, int) {
     const Real* q = p.data() + row;
     for (int a = 0; a < 3; ++a) {
-      const Real* o = c.open[a].data() + row;
+      const OpenParts<Real> o = c.open(a) + row;
       Real* u = U[a].data() + row;
       const auto sa = l.stride[a];
 #pragma omp simd
@@ -126,7 +129,7 @@ void convertCoefficients(const StaggeredCoefficients<From>& c, StaggeredCoeffici
   out.lattice = c.lattice;
   out.viscous = c.viscous;
   copy(c.mass, out.mass);
-  copy(c.open, out.open);
+  copy(c.fluid(), out.own_fluid);
   out.drag = c.drag;
   out.normal = c.normal;
   out.shear = c.shear;

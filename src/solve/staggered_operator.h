@@ -7,7 +7,8 @@
 //   shear sample of edge c, pair (a,b):
 //                      t = shear[ab].first (U_a[c] - U_a[c - b]) + shear[ab].second (U_b[c] - U_b[c - a])
 //   viscous block   A U = mass U + drag U + D^T (s, t)        symmetric, positive definite where mass > 0
-//   divergence      (C U)[c] = sum_a open[a][c + a] U_a[c + a] - open[a][c] U_a[c], on cells with pressure
+//   divergence      (C U)[c] = sum_a open[a][c + a] U_a[c + a] - open[a][c] U_a[c], on cells with pressure;
+//                   open: part of a face that is fluid, 0 where mass is 0
 //   pressure block  L = C mass^-1 C^T                          symmetric, positive semi-definite
 // All of it dimensionless: velocities in m/s, every coefficient a ratio (coupling/stokes_coefficients.h).
 
@@ -33,25 +34,40 @@ template <class Real>
 using FaceField = std::array<std::vector<Real>, 3>;
 using FaceMask = FaceField<std::uint8_t>;  // 1 or 0
 
+// open of the faces along an axis, or of those from one on.
+template <class Real>
+struct OpenParts {
+  const Real* mass;
+  const Real* fluid;
+  Real operator[](std::ptrdiff_t face) const { return mass[face] > Real(0) ? fluid[face] : Real(0); }
+  OpenParts operator+(std::ptrdiff_t faces) const { return {mass + faces, fluid + faces}; }
+};
+
 template <class Real>
 struct StaggeredCoefficients {
   Lattice lattice;
   bool viscous = false;
-  FaceField<Real> mass;                    // liquid part of the face's control volume; 0: no unknown
-  FaceField<Real> open;                    // part of it that is not solid; 0 where mass is 0
-  FaceField<float> drag;                   // tie of a face to the solid it lies in
-  FaceField<float> normal;                 // per cell and axis
+  FaceField<Real> mass;  // liquid part of the face's control volume; 0: no unknown
+  // Part of it that is not solid: own, or somebody's field, which must outlive the coefficients' use.
+  FaceField<Real> own_fluid;
+  const FaceField<Real>* others_fluid = nullptr;
+  FaceField<float> drag;    // tie of a face to the solid it lies in; empty: there is none
+  FaceField<float> normal;  // per cell and axis
   std::array<std::array<std::vector<float>, 2>, 3> shear;  // per pair: factor of the first, of the second component
   std::vector<std::uint8_t> has_pressure;  // per cell
 
+  const FaceField<Real>& fluid() const { return others_fluid != nullptr ? *others_fluid : own_fluid; }
+  OpenParts<Real> open(int axis) const { return {mass[axis].data(), fluid()[axis].data()}; }
+
+  // All zero, but for another's field. No ties.
   void resize(const Lattice& l, bool with_viscosity) {
     lattice = l;
     viscous = with_viscosity;
     for (int a = 0; a < 3; ++a) {
       mass[a].assign(l.size, Real(0));
-      open[a].assign(l.size, Real(0));
       const std::size_t viscous_size = viscous ? l.size : 0;
-      drag[a].assign(viscous_size, 0.0f);
+      own_fluid[a].assign(others_fluid != nullptr ? 0 : l.size, Real(0));
+      drag[a].clear();
       normal[a].assign(viscous_size, 0.0f);
       for (int s = 0; s < 2; ++s) shear[a][s].assign(viscous_size, 0.0f);
     }

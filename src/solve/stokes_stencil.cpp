@@ -88,7 +88,7 @@ void fillFaceRow(const StaggeredCoefficients<From>& c, int a, std::ptrdiff_t row
   const Lattice& l = c.lattice;
   const auto sa = l.stride[a];
   const From* m = c.mass[a].data() + row;
-  const From* open = c.open[a].data() + row;
+  const From* fluid = c.fluid()[a].data() + row;
   std::array<Real*, S::kCount> k;
   for (int q = 0; q < S::kCount; ++q) k[q] = out[q].data();
   // Until the end, kInverse holds the diagonal, kTransfer the ties, kOpen the sum of what is off the diagonal.
@@ -100,13 +100,17 @@ void fillFaceRow(const StaggeredCoefficients<From>& c, int a, std::ptrdiff_t row
       k[S::kTransfer][i] = m[i];
     }
   } else {
-    const float* drag = c.drag[a].data() + row;
+    if (c.drag[a].empty()) {
+      std::fill_n(k[S::kTie], width, Real(0));
+    } else {
+      std::copy_n(c.drag[a].data() + row, width, k[S::kTie]);
+    }
     const float* normal = c.normal[a].data() + row;
 #pragma omp simd
     for (int i = 0; i < width; ++i) {
       const Real low = normal[i - sa], high = normal[i];
       const bool has_low = m[i - sa] > From(0), has_high = m[i + sa] > From(0);
-      const Real tie = m[i] + drag[i];
+      const Real tie = m[i] + k[S::kTie][i];
       k[S::kTie][i] = tie;
       k[S::kNormalLow][i] = low;
       k[S::kNormalHigh][i] = high;
@@ -151,8 +155,8 @@ void fillFaceRow(const StaggeredCoefficients<From>& c, int a, std::ptrdiff_t row
     const Real effective = has ? k[S::kTransfer][i] : Real(1);
     k[S::kInverse][i] = Real(1) / diagonal;
     k[S::kTransfer][i] = std::max(Real(0), Real(1) - (effective - Real(m[i])) / diagonal);
-    k[S::kOpen][i] = open[i];
-    if (impulse != nullptr) impulse[i] = has ? static_cast<float>(Real(open[i]) / effective) : 0.0f;
+    k[S::kOpen][i] = fluid[i];
+    if (impulse != nullptr) impulse[i] = has ? static_cast<float>(Real(fluid[i]) / effective) : 0.0f;
   }
   for (int i = 0; i < width; ++i) {
     if (m[i] > From(0)) continue;
@@ -199,7 +203,7 @@ void buildCellBlocks(const StaggeredCoefficients<From>& c, CellBlocks<Real>& out
     const std::uint8_t* has = c.has_pressure.data() + row;
     if (isZero(has, width)) return false;
     for (int a = 0; a < 3; ++a) {
-      const From* open = c.open[a].data() + row;
+      const OpenParts<From> open = c.open(a) + row;
       for (int i = 0; i < width; ++i) {
         k[CellStencil::kLow + a][i] = has[i] ? Real(open[i]) : Real(0);
         k[CellStencil::kHigh + a][i] = has[i] ? Real(open[i + l.stride[a]]) : Real(0);

@@ -40,7 +40,7 @@ std::vector<Region> floodFill(const StaggeredCoefficients<double>& c) {
               const auto other = inside ? l.index(at[0], at[1], at[2]) : cell + side * l.stride[a];
               auto face = side < 0 ? cell : other;
               if (side > 0 && !inside) face = cell + l.stride[a];
-              if (!(c.open[a][face] > 0.0)) continue;
+              if (!(c.open(a)[face] > 0.0)) continue;
               if (!inside || !c.has_pressure[other]) {
                 region.sealed = false;
               } else if (!seen[other]) {
@@ -73,12 +73,13 @@ StaggeredCoefficients<double> randomRegions(unsigned seed, const std::array<bool
         const int at[3] = {i, j, k};
         for (int a = 0; a < 3; ++a) {
           const bool wall = at[a] == 0 && !periodic[a];
-          c.open[a][cell] = wall || (unit(random) < closed && !(whole && a == 0)) ? 0.0 : 0.5;
+          c.mass[a][cell] = wall || (unit(random) < closed && !(whole && a == 0)) ? 0.0 : 0.5;
         }
       }
     }
   }
-  for (int a = 0; a < 3; ++a) fillHalo(l, c.open[a]);
+  for (auto& field : c.mass) fillHalo(l, field);
+  c.own_fluid = c.mass;
   return c;
 }
 
@@ -118,9 +119,10 @@ TEST(PressureRegions, AFreeBodyFeelsTheConstantUnlessItsRowsCancel) {
   const Lattice& l = c.lattice;
   for (int i = 0; i < l.n[0]; ++i) c.has_pressure[l.index(i, 2, 3)] = 1;
   for (int i = 0; i < l.n[0]; ++i) {
-    for (int a = 1; a < 3; ++a) c.open[a][l.index(i, 2, 3)] = c.open[a][l.index(i, 2, 3) + l.stride[a]] = 0.0;
-    c.open[0][l.index(i, 2, 3)] = i > 0 ? 1.0 : 0.0;
+    for (int a = 1; a < 3; ++a) c.mass[a][l.index(i, 2, 3)] = c.mass[a][l.index(i, 2, 3) + l.stride[a]] = 0.0;
+    c.mass[0][l.index(i, 2, 3)] = i > 0 ? 1.0 : 0.0;
   }
+  c.own_fluid = c.mass;
   BodyRows rows;
   rows.divergence.push_back({l.index(1, 2, 3), 0, Vector6d::Unit(0)});
   EXPECT_FALSE(findPressureRegions(c, rows, {1}).at(0).null_mode);

@@ -103,7 +103,7 @@ TEST(RigidModes, WhatABodyJoinsToLiquidThatIsHeldIsHeld) {
   }
   c.has_pressure[pocket] = 1;
   for (int a = 0; a < 3; ++a) {
-    for (std::size_t f = 0; f < l.size; ++f) c.open[a][f] = 1.0;
+    for (std::size_t f = 0; f < l.size; ++f) c.mass[a][f] = c.own_fluid[a][f] = 1.0;
   }
   BodyRows rows;
   rows.divergence.push_back({pocket, 0, Vector6d::Unit(2)});

@@ -20,7 +20,10 @@ KernelWork workOfDivergence(int n) {
       for (int i = 0; i < n; ++i) {
         const int at[3] = {i, j, k};
         c.has_pressure[l.index(i, j, k)] = 1;
-        for (int a = 0; a < 3; ++a) c.open[a][l.index(i, j, k)] = at[a] > 0 ? 1.0f : 0.0f;
+        for (int a = 0; a < 3; ++a) {
+          const auto f = l.index(i, j, k);
+          c.mass[a][f] = c.own_fluid[a][f] = at[a] > 0 ? 1.0f : 0.0f;
+        }
       }
     }
   }

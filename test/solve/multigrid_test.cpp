@@ -27,7 +27,7 @@ StaggeredCoefficients<double> box(const Lattice& l, double number, int fill) {
           bool inside = true;
           for (int b = 0; b < 3; ++b) inside = inside && at[b] < l.n[b] && (b != a || at[b] > 0);
           const bool wet = a == 2 ? k <= fill : k < fill;
-          if (inside && wet) c.mass[a][f] = c.open[a][f] = 1.0;
+          if (inside && wet) c.mass[a][f] = c.own_fluid[a][f] = 1.0;
           if (number > 0.0 && c.has_pressure[f]) c.normal[a][f] = 2.0 * number;
         }
         if (number <= 0.0) continue;
@@ -148,7 +148,7 @@ struct PressureCase {
           const auto f = l.index(i, j, k);
           c.has_pressure[f] = 0;
           for (int a = 0; a < 3; ++a) {
-            for (const auto face : {f, f + l.stride[a]}) c.mass[a][face] = c.open[a][face] = 0.0;
+            for (const auto face : {f, f + l.stride[a]}) c.mass[a][face] = c.own_fluid[a][face] = 0.0;
           }
         }
       }
@@ -190,7 +190,7 @@ struct PressureCase {
 double pressureFactor(int n, int fill) {
   const PressureCase p(n, fill);
   PressureMultigrid multigrid;
-  multigrid.set(p.l, p.c.has_pressure, p.c.open, p.impulse);
+  multigrid.set(p.l, p.c.has_pressure, p.c.fluid(), p.impulse);
   std::vector<float> x = p.zero(), b = x, r;
   std::mt19937 random(3);
   std::normal_distribution<float> gauss;
@@ -219,7 +219,7 @@ TEST(PressureMultigrid, IsLinear) {
   for (const int fill : {1000, 9}) {
     const PressureCase p(16, fill);
     PressureMultigrid multigrid;
-    multigrid.set(p.l, p.c.has_pressure, p.c.open, p.impulse);
+    multigrid.set(p.l, p.c.has_pressure, p.c.fluid(), p.impulse);
     const auto cycle = [&](const std::vector<float>& b) {
       const float* x = multigrid.cycle(b.data());
       std::vector<float> out = p.zero();
@@ -263,8 +263,8 @@ TEST(PressureMultigrid, LeavesLongWavesToTheCoarserLevels) {
     ASSERT_LT(count, inside / 2);
     p.removeMean(b);
     PressureMultigrid everywhere, partly;
-    everywhere.set(l, p.c.has_pressure, p.c.open, p.impulse);
-    partly.set(l, p.c.has_pressure, p.c.open, p.impulse, nullptr, &smoothed);
+    everywhere.set(l, p.c.has_pressure, p.c.fluid(), p.impulse);
+    partly.set(l, p.c.has_pressure, p.c.fluid(), p.impulse, nullptr, &smoothed);
     for (int cycle = 0; cycle < 12; ++cycle) {
       const std::vector<float> r = p.residual(b, exact);
       const float* d = everywhere.cycle(r.data());
@@ -307,7 +307,7 @@ TEST(PressureMultigrid, IsWhatANewOneWouldBeAfterTheSurfaceHasMoved) {
       }
       PressureMultigrid fresh;
       for (PressureMultigrid* m : {&kept, &fresh}) {
-        m->set(l, p.c.has_pressure, p.c.open, p.impulse, nullptr, part ? &smoothed : nullptr);
+        m->set(l, p.c.has_pressure, p.c.fluid(), p.impulse, nullptr, part ? &smoothed : nullptr);
       }
       const std::vector<float> again(kept.cycle(b.data()), kept.cycle(b.data()) + l.size);
       const float* once = fresh.cycle(b.data());
