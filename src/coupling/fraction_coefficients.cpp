@@ -133,30 +133,33 @@ void buildFractionCoefficients(const Lattice& l, const FractionGeometry& g, doub
   if (!out.viscous) return;
 
   if (strain != nullptr) strain->resize(l);
-  forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
+  const auto buildRow = [&](std::ptrdiff_t row, int j, int k, ViscousPlane& plane) {
     for (int i = 0; i < width; ++i) {
-      const auto c = row + i;
+      const auto c = row + i, at = c - plane.begin;
       if (i < l.n[0] && j < l.n[1] && k < l.n[2]) {
         for (int a = 0; a < 3; ++a) {
           if (isAir(a, c) || isAir(a, c + l.stride[a])) continue;
-          out.normal[a][c] = 2.0 * viscous_number * g.liquid.cell[c] * g.stress.cell[c];
-          if (strain != nullptr && out.normal[a][c] > 0.0) strain->normal[a][c] = 1.0;
+          plane.normal[a][at] = static_cast<float>(2.0 * viscous_number * g.liquid.cell[c] * g.stress.cell[c]);
+          if (strain != nullptr && plane.normal[a][at] > 0.0F) strain->normal[a][c] = 1.0;
         }
       }
       for (int p = 0; p < 3; ++p) {
         const auto [a, b] = kShearPairs[p];
         if (isAir(a, c) || isAir(a, c - l.stride[b]) || isAir(b, c) || isAir(b, c - l.stride[a])) continue;
         const double factor = std::sqrt(viscous_number * g.liquid.edge[p][c] * g.stress.edge[p][c]);
-        out.shear[p][0][c] = factor;
-        out.shear[p][1][c] = factor;
+        for (auto& field : plane.shear[p]) field[at] = static_cast<float>(factor);
         if (strain != nullptr && factor > 0.0) strain->shear[p][c] = 1.0 / factor;
       }
     }
-  });
-  for (int a = 0; a < 3; ++a) {
-    fillHalo(l, out.normal[a]);
-    for (int s = 0; s < 2; ++s) fillHalo(l, out.shear[a][s]);
+  };
+#pragma omp parallel for schedule(static, kPlanesInTurn)
+  for (int k = 0; k < l.faceEnd(2); ++k) {
+    ViscousPlane plane;
+    plane.unpack(out, k);
+    for (int j = 0; j < l.faceEnd(1); ++j) buildRow(l.index(0, j, k), j, k, plane);
+    plane.pack(k, out);
   }
+  out.forEachViscous([](RowField<float>& field) { field.shareImages(); });
   if (strain != nullptr) strain->fillHalos(l);
 }
 

@@ -68,10 +68,11 @@ void LiquidPreconditioner::set(const StepProblem& problem, const FaceBlocks<floa
   if (!problem.coefficients.viscous) return;
   const auto& normal = problem.coefficients.normal;
   forEachRow(l, [&](std::ptrdiff_t row, int, int) {
-    for (auto c = row; c < row + l.n[0]; ++c) {
-      const double ratio = problem.cell_viscosity.empty() ? 1.0 : problem.cell_viscosity[c];
-      const double mean = (normal[0][c] + normal[1][c] + normal[2][c]) / 3.0;
-      weight_[c] = static_cast<float>(std::min(mean, 2.0 * ratio * problem.viscous_number));
+    const float *x = normal[0].row(row), *y = normal[1].row(row), *z = normal[2].row(row);
+    for (int i = 0; i < l.n[0]; ++i) {
+      const double ratio = problem.cell_viscosity.empty() ? 1.0 : problem.cell_viscosity[row + i];
+      const double mean = (x[i] + y[i] + z[i]) / 3.0;
+      weight_[row + i] = static_cast<float>(std::min(mean, 2.0 * ratio * problem.viscous_number));
     }
   });
 }

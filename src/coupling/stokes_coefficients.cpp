@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "coupling/stokes_samples.h"
 #include "solve/staggered_transfer.h"
-#include "solve/whole_fields.h"
 
 namespace monolith {
 namespace {
@@ -53,20 +51,21 @@ void prepareToFill(const Lattice& l, bool viscous, StaggeredCoefficients<double>
 }
 
 // The viscous samples of one cell, whatever is around it.
-void buildSamples(const SampleBuilder& samples, double viscous_number, std::ptrdiff_t c,
-                  StaggeredCoefficients<double>& out, StrainScales* strain) {
+void buildSamples(const SampleBuilder& samples, const StaggeredCoefficients<double>& coefficients,
+                  double viscous_number, std::ptrdiff_t c, ViscousPlane& out, StrainScales* strain) {
   const Lattice& l = samples.lattice;
+  const std::ptrdiff_t at = c - out.begin;
   for (int a = 0; a < 3; ++a) {
     const FittedSegment s = samples.segment(a, c, a);
     if (s.defined && !s.both_solid) {
       // eta |D_aa|^2: D^T D gives 2 N per unit weight; weight theta over theta^2.
-      out.normal[a][c] = 2.0 * viscous_number * samples.liquidOfCell(c) / s.theta;
-      if (strain != nullptr && out.normal[a][c] > 0.0) strain->normal[a][c] = 1.0 / s.theta;
+      out.normal[a][at] = static_cast<float>(2.0 * viscous_number * samples.liquidOfCell(c) / s.theta);
+      if (strain != nullptr && out.normal[a][at] > 0.0F) strain->normal[a][c] = 1.0 / s.theta;
     }
     if (samples.kind(a, c) == FaceKind::kSliver) {
       // The film between the face's open part and the surface is about half the open part thick.
-      const double open = std::max(out.open(a)[c], kLeastSliver);
-      out.drag[a][c] = 4.0 * viscous_number / open;
+      const double open = std::max(coefficients.open(a)[c], kLeastSliver);
+      out.drag[a][at] = static_cast<float>(4.0 * viscous_number / open);
       if (strain != nullptr) strain->drag[a][c] = 2.0 / open;
     }
   }
@@ -79,15 +78,15 @@ void buildSamples(const SampleBuilder& samples, double viscous_number, std::ptrd
     const auto& d = *samples.geometry.solid_distance;
     const double share = shearWeight(s, t, d[a][c - l.stride[b]], d[a][c], d[b][c - l.stride[a]], d[b][c]);
     const double weight = std::sqrt(viscous_number * samples.liquidOfEdge(c, a, b) * share);
-    out.shear[p][0][c] = weight / s.theta;
-    out.shear[p][1][c] = weight / t.theta;
+    out.shear[p][0][at] = static_cast<float>(weight / s.theta);
+    out.shear[p][1][at] = static_cast<float>(weight / t.theta);
     if (strain != nullptr && weight > 0.0) strain->shear[p][c] = 1.0 / weight;
   }
 }
 
 // The same for the cells of a row that markCells() found plain; zero for the others.
 void buildPlainRow(const SampleBuilder& samples, double viscous_number, std::ptrdiff_t row,
-                   const std::vector<std::uint8_t>& mark, StaggeredCoefficients<double>& out) {
+                   const std::vector<std::uint8_t>& mark, ViscousPlane& out) {
   constexpr auto kAir = static_cast<std::uint8_t>(FaceKind::kAir);
   const Lattice& l = samples.lattice;
   const int width = static_cast<int>(mark.size());
@@ -106,7 +105,7 @@ void buildPlainRow(const SampleBuilder& samples, double viscous_number, std::ptr
     for (int i = 0; i < width; ++i) {
       has[i] = (m[i] == SampleBuilder::kPlain) & (kind[i] != kAir) & (kind[i + s] != kAir);
     }
-    float* normal = out.normal[a].data() + row;
+    float* normal = out.normal[a].data() + (row - out.begin);
 #pragma omp simd
     for (int i = 0; i < width; ++i) normal[i] = static_cast<float>(has[i] ? number * part(d[i]) : 0.0);
   }
@@ -118,8 +117,8 @@ void buildPlainRow(const SampleBuilder& samples, double viscous_number, std::ptr
       has[i] = (m[i] == SampleBuilder::kPlain) & (kind_a[i] != kAir) & (kind_a[i - sb] != kAir) & (kind_b[i] != kAir) &
                (kind_b[i - sa] != kAir);
     }
-    float* first = out.shear[p][0].data() + row;
-    float* second = out.shear[p][1].data() + row;
+    float* first = out.shear[p][0].data() + (row - out.begin);
+    float* second = out.shear[p][1].data() + (row - out.begin);
 #pragma omp simd
     for (int i = 0; i < width; ++i) {
       const double liquid = part(0.25 * (d[i] + d[i - sa] + d[i - sb] + d[i - sa - sb]));
@@ -184,32 +183,29 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
 
   if (strain != nullptr) strain->resize(l);
   findFaceKinds(l, geometry, out, steady, kinds);
-  for (int a = 0; a < 3; ++a) {
-    if (std::memchr(kinds[a].data(), static_cast<int>(FaceKind::kSliver), kinds[a].size()) == nullptr) {
-      out.drag[a] = std::vector<float>();
-    } else if (out.drag[a].empty()) {
-      assignZero(l.size, out.drag[a]);
-    }
-  }
   const SampleBuilder samples(l, geometry, kinds);
-  forEachHeavyRow(l, [&](std::ptrdiff_t row, int j, int k) {
-    if (keeps(j, k)) return;
-    for (auto& field : out.drag) {
-      if (!field.empty()) std::fill_n(field.data() + row, width, 0.0F);
+#pragma omp parallel for schedule(dynamic) if (l.size >= kHeavySizeWorthSharing)
+  for (int k = 0; k < l.faceEnd(2); ++k) {
+    int j = 0;
+    while (j < l.faceEnd(1) && keeps(j, k)) ++j;
+    if (j == l.faceEnd(1)) continue;
+    ViscousPlane plane;
+    plane.unpack(out, k);
+    std::vector<std::uint8_t> mark;
+    for (; j < l.faceEnd(1); ++j) {
+      if (keeps(j, k)) continue;
+      const std::ptrdiff_t row = l.index(0, j, k);
+      for (auto& field : plane.drag) std::fill_n(field.data() + (row - plane.begin), width, 0.0F);
+      samples.markCells(row, width, mark);
+      buildPlainRow(samples, viscous_number, row, mark, plane);
+      for (int i = 0; i < width; ++i) {
+        if (mark[i] == SampleBuilder::kAllAir || (mark[i] == SampleBuilder::kPlain && strain == nullptr)) continue;
+        buildSamples(samples, out, viscous_number, row + i, plane, strain);
+      }
     }
-    thread_local std::vector<std::uint8_t> mark;
-    samples.markCells(row, width, mark);
-    buildPlainRow(samples, viscous_number, row, mark, out);
-    for (int i = 0; i < width; ++i) {
-      if (mark[i] == SampleBuilder::kAllAir || (mark[i] == SampleBuilder::kPlain && strain == nullptr)) continue;
-      buildSamples(samples, viscous_number, row + i, out, strain);
-    }
-  });
-  for (int a = 0; a < 3; ++a) {
-    fillHalo(l, out.normal[a]);
-    if (!out.drag[a].empty()) fillHalo(l, out.drag[a]);
-    for (int s = 0; s < 2; ++s) fillHalo(l, out.shear[a][s]);
+    plane.pack(k, out);
   }
+  out.forEachViscous([](RowField<float>& field) { field.shareImages(); });
   if (strain != nullptr) strain->fillHalos(l);
 }
 

@@ -111,7 +111,7 @@ void buildBodyRows(const MacGrid& grid, const SolidFractions& solids, const std:
           if (coefficients.normal[a][c] > 0.0) {
             rows.addSegment(a, c, grid.faceCenter(a, i, j, k), a, 1.0, c, slab.normal[a]);
           }
-          if (!coefficients.drag[a].empty() && coefficients.drag[a][c] > 0.0 && solids.owner[a][c] >= 0) {
+          if (coefficients.drag[a][c] > 0.0 && solids.owner[a][c] >= 0) {
             const int owner = solids.owner[a][c];
             const RigidBody& body = bodies[owner];
             const Eigen::Vector3d x = grid.faceCenter(a, i, j, k);

@@ -251,17 +251,12 @@ void VariableViscosity::apply(const ViscosityField& field, StepProblem& problem)
   for (int a = 0; a < 3; ++a) {
     const double* edge = ratio.data() + (1 + a) * size;
     const double* film = ratio.data() + (4 + a) * size;
-#pragma omp parallel for simd schedule(static)
-    for (std::ptrdiff_t i = 0; i < size; ++i) {
-      const double root = std::sqrt(edge[i]);
-      c.normal[a][i] = normal_[a][i] * ratio[i];
-      c.shear[a][0][i] = shear_[a][0][i] * root;
-      c.shear[a][1][i] = shear_[a][1][i] * root;
-      if (!drag_[a].empty()) c.drag[a][i] = drag_[a][i] * film[i];
+    c.normal[a].transform(normal_[a], [&](std::ptrdiff_t i, float k) { return static_cast<float>(k * ratio[i]); });
+    c.drag[a].transform(drag_[a], [&](std::ptrdiff_t i, float k) { return static_cast<float>(k * film[i]); });
+    for (int s = 0; s < 2; ++s) {
+      c.shear[a][s].transform(
+          shear_[a][s], [&](std::ptrdiff_t i, float k) { return static_cast<float>(k * std::sqrt(edge[i])); });
     }
-    fillHalo(l, c.normal[a]);
-    if (!drag_[a].empty()) fillHalo(l, c.drag[a]);
-    for (int s = 0; s < 2; ++s) fillHalo(l, c.shear[a][s]);
     scaleRows(shear_rows_[a], applied_.data() + (1 + a) * size, problem.rows.shear[a]);
   }
   problem.cell_viscosity.resize(l.size);
@@ -301,17 +296,17 @@ void VariableViscosity::scaleCoarse(const ViscosityField& field, StepProblem& pr
     for (int a = 0; a < 3; ++a) {
       const auto first = l.stride[kShearPairs[a][0]];
       const auto second = l.stride[kShearPairs[a][1]];
-      forEachRow(l, [&](std::ptrdiff_t row, int, int) {
-        for (auto i = row; i < row + l.faceEnd(0); ++i) {
-          c.normal[a][i] *= static_cast<float>(std::exp(to[i]));
-          if (!c.drag[a].empty()) c.drag[a][i] *= static_cast<float>(std::exp(0.5 * (to[i] + to[i - l.stride[a]])));
-          const double edge = 0.25 * (to[i] + to[i - first] + to[i - second] + to[i - first - second]);
-          for (int s = 0; s < 2; ++s) c.shear[a][s][i] *= static_cast<float>(std::exp(0.5 * edge));
-        }
+      c.normal[a].transform(c.normal[a],
+                            [&](std::ptrdiff_t i, float k) { return k * static_cast<float>(std::exp(to[i])); });
+      c.drag[a].transform(c.drag[a], [&](std::ptrdiff_t i, float k) {
+        return k * static_cast<float>(std::exp(0.5 * (to[i] + to[i - l.stride[a]])));
       });
-      fillHalo(l, c.normal[a]);
-      if (!c.drag[a].empty()) fillHalo(l, c.drag[a]);
-      for (int s = 0; s < 2; ++s) fillHalo(l, c.shear[a][s]);
+      for (auto& field : c.shear[a]) {
+        field.transform(field, [&](std::ptrdiff_t i, float k) {
+          const double edge = 0.25 * (to[i] + to[i - first] + to[i - second] + to[i - first - second]);
+          return k * static_cast<float>(std::exp(0.5 * edge));
+        });
+      }
     }
   }
 }

@@ -59,8 +59,8 @@ class VariableViscosity {
 
   double reference_ = 1.0;
   StrainScales scales_;
-  FaceField<float> normal_, drag_;
-  std::array<std::array<std::vector<float>, 2>, 3> shear_;
+  std::array<RowField<float>, 3> normal_, drag_;
+  std::array<std::array<RowField<float>, 2>, 3> shear_;
   std::array<std::vector<BodyRow>, 3> shear_rows_;
   std::vector<StaggeredCoefficients<float>> coarse_;
   std::vector<double> applied_;  // log ratios

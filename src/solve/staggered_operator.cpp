@@ -10,7 +10,7 @@ void computeStress(const StaggeredCoefficients<Real>& c, const FaceField<Real>& 
   forEachRow(l, [&](std::ptrdiff_t row, int, int) {
     for (int a = 0; a < 3; ++a) {
       const Real* u = U[a].data() + row;
-      const float* k = c.normal[a].data() + row;
+      const float* k = c.normal[a].row(row);
       Real* s = stress.normal[a].data() + row;
       const auto step = l.stride[a];
 #pragma omp simd
@@ -20,8 +20,8 @@ void computeStress(const StaggeredCoefficients<Real>& c, const FaceField<Real>& 
       const auto [a, b] = kShearPairs[p];
       const Real* u = U[a].data() + row;
       const Real* v = U[b].data() + row;
-      const float* ku = c.shear[p][0].data() + row;
-      const float* kv = c.shear[p][1].data() + row;
+      const float* ku = c.shear[p][0].row(row);
+      const float* kv = c.shear[p][1].row(row);
       Real* t = stress.shear[p].data() + row;
       const auto sa = l.stride[a];
       const auto sb = l.stride[b];
@@ -61,18 +61,16 @@ void applyMomentum(const StaggeredCoefficients<Real>& c, const FaceField<Real>& 
       const auto sq = l.stride[q_first ? kShearPairs[q][1] : kShearPairs[q][0]];
       const Real* tp = stress.shear[p].data() + row;
       const Real* tq = stress.shear[q].data() + row;
-      const float* kp = c.shear[p][p_first ? 0 : 1].data() + row;
-      const float* kq = c.shear[q][q_first ? 0 : 1].data() + row;
+      const float* d = c.drag[a].row(row);
+      const RowField<float>&p_factor = c.shear[p][p_first ? 0 : 1], &q_factor = c.shear[q][q_first ? 0 : 1];
+      const float *kp = p_factor.row(row), *kp_next = p_factor.row(row + sp);
+      const float *kq = q_factor.row(row), *kq_next = q_factor.row(row + sq);
 #pragma omp simd
       for (int i = 0; i < width; ++i) {
-        const Real force = s[i - sa] - s[i] + kp[i] * tp[i] - kp[i + sp] * tp[i + sp] + kq[i] * tq[i] -
-                           kq[i + sq] * tq[i + sq];
-        out[i] = m[i] > Real(0) ? m[i] * u[i] + force : Real(0);
+        const Real force = s[i - sa] - s[i] + kp[i] * tp[i] - kp_next[i] * tp[i + sp] + kq[i] * tq[i] -
+                           kq_next[i] * tq[i + sq];
+        out[i] = m[i] > Real(0) ? (m[i] + d[i]) * u[i] + force : Real(0);
       }
-      if (c.drag[a].empty()) continue;
-      const float* d = c.drag[a].data() + row;
-#pragma omp simd
-      for (int i = 0; i < width; ++i) out[i] += m[i] > Real(0) ? d[i] * u[i] : Real(0);
     }
   });
 }

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "solve/lattice.h"
+#include "solve/row_field.h"
 
 namespace monolith {
 
@@ -51,27 +52,61 @@ struct StaggeredCoefficients {
   // Part of it that is not solid: own, or somebody's field, which must outlive the coefficients' use.
   FaceField<Real> own_fluid;
   const FaceField<Real>* others_fluid = nullptr;
-  FaceField<float> drag;    // tie of a face to the solid it lies in; empty: there is none
-  FaceField<float> normal;  // per cell and axis
-  std::array<std::array<std::vector<float>, 2>, 3> shear;  // per pair: factor of the first, of the second component
-  std::vector<std::uint8_t> has_pressure;  // per cell
+  std::array<RowField<float>, 3> drag;                  // tie of a face to the solid it lies in
+  std::array<RowField<float>, 3> normal;                // per cell and axis
+  std::array<std::array<RowField<float>, 2>, 3> shear;  // per pair: factor of the first, of the second component
+  std::vector<std::uint8_t> has_pressure;               // per cell
 
   const FaceField<Real>& fluid() const { return others_fluid != nullptr ? *others_fluid : own_fluid; }
   OpenParts<Real> open(int axis) const { return {mass[axis].data(), fluid()[axis].data()}; }
 
-  // All zero, but for another's field. No ties.
+  // All zero, but for another's field.
   void resize(const Lattice& l, bool with_viscosity) {
     lattice = l;
     viscous = with_viscosity;
     for (int a = 0; a < 3; ++a) {
       mass[a].assign(l.size, Real(0));
-      const std::size_t viscous_size = viscous ? l.size : 0;
       own_fluid[a].assign(others_fluid != nullptr ? 0 : l.size, Real(0));
-      drag[a].clear();
-      normal[a].assign(viscous_size, 0.0f);
-      for (int s = 0; s < 2; ++s) shear[a][s].assign(viscous_size, 0.0f);
     }
     has_pressure.assign(l.size, 0);
+    forEachViscous([&](RowField<float>& field) {
+      field.clear();
+      if (viscous) field.reshape(l);
+    });
+  }
+  // f(field) for those that viscosity makes.
+  template <class Function>
+  void forEachViscous(Function&& f) {
+    for (int a = 0; a < 3; ++a) {
+      f(drag[a]);
+      f(normal[a]);
+      for (auto& field : shear[a]) f(field);
+    }
+  }
+};
+
+// A plane of the coefficients that viscosity makes, to be written entry by entry.
+struct ViscousPlane {
+  std::ptrdiff_t begin = 0;  // of the lattice: where its entries start
+  FaceField<float> drag, normal;
+  std::array<std::array<std::vector<float>, 2>, 3> shear;
+
+  template <class Real>
+  void unpack(const StaggeredCoefficients<Real>& c, int k) {
+    begin = c.lattice.planeBegin(k);
+    for (int a = 0; a < 3; ++a) {
+      c.drag[a].unpackPlane(k, drag[a]);
+      c.normal[a].unpackPlane(k, normal[a]);
+      for (int s = 0; s < 2; ++s) c.shear[a][s].unpackPlane(k, shear[a][s]);
+    }
+  }
+  template <class Real>
+  void pack(int k, StaggeredCoefficients<Real>& c) {
+    for (int a = 0; a < 3; ++a) {
+      c.drag[a].packPlane(k, drag[a]);
+      c.normal[a].packPlane(k, normal[a]);
+      for (int s = 0; s < 2; ++s) c.shear[a][s].packPlane(k, shear[a][s]);
+    }
   }
 };
 

@@ -100,17 +100,13 @@ void fillFaceRow(const StaggeredCoefficients<From>& c, int a, std::ptrdiff_t row
       k[S::kTransfer][i] = m[i];
     }
   } else {
-    if (c.drag[a].empty()) {
-      std::fill_n(k[S::kTie], width, Real(0));
-    } else {
-      std::copy_n(c.drag[a].data() + row, width, k[S::kTie]);
-    }
-    const float* normal = c.normal[a].data() + row;
+    const float* drag = c.drag[a].row(row);
+    const float *lows = c.normal[a].row(row - sa), *highs = c.normal[a].row(row);
 #pragma omp simd
     for (int i = 0; i < width; ++i) {
-      const Real low = normal[i - sa], high = normal[i];
+      const Real low = lows[i], high = highs[i];
       const bool has_low = m[i - sa] > From(0), has_high = m[i + sa] > From(0);
-      const Real tie = m[i] + k[S::kTie][i];
+      const Real tie = m[i] + drag[i];
       k[S::kTie][i] = tie;
       k[S::kNormalLow][i] = low;
       k[S::kNormalHigh][i] = high;
@@ -121,16 +117,18 @@ void fillFaceRow(const StaggeredCoefficients<From>& c, int a, std::ptrdiff_t row
     for (int o = 0; o < 2; ++o) {
       const int b = kOthers[a].axis[o], place = kOthers[a].place[o];
       const auto sb = l.stride[b];
-      const float* own = c.shear[kOthers[a].pair[o]][place].data() + row;
-      const float* other = c.shear[kOthers[a].pair[o]][1 - place].data() + row;
+      const RowField<float>& owns = c.shear[kOthers[a].pair[o]][place];
+      const RowField<float>& others = c.shear[kOthers[a].pair[o]][1 - place];
+      const float *own = owns.row(row), *own_next = owns.row(row + sb);
+      const float *other = others.row(row), *other_next = others.row(row + sb);
       const From* mb = c.mass[b].data() + row;
       Real *s_low = k[S::kShearLow + o], *s_high = k[S::kShearHigh + o], *x_low = k[S::kCrossLow + o],
            *x_high = k[S::kCrossHigh + o];
 #pragma omp simd
       for (int i = 0; i < width; ++i) {
-        const Real low = Real(own[i]) * Real(own[i]), high = Real(own[i + sb]) * Real(own[i + sb]);
+        const Real low = Real(own[i]) * Real(own[i]), high = Real(own_next[i]) * Real(own_next[i]);
         const bool has_low = m[i - sb] > From(0), has_high = m[i + sb] > From(0);
-        const Real cross_low = Real(own[i]) * Real(other[i]), cross_high = Real(own[i + sb]) * Real(other[i + sb]);
+        const Real cross_low = Real(own[i]) * Real(other[i]), cross_high = Real(own_next[i]) * Real(other_next[i]);
         s_low[i] = low;
         s_high[i] = high;
         x_low[i] = cross_low;

@@ -335,7 +335,7 @@ TEST(FractionRows, AreThoseOfAnExplicitQ) {
         expectSame(gathered(rows.divergence), full.divergence, 1.0, "J_p");
         double largest = 0.0;
         for (const auto& field : scene.problem.coefficients.shear) {
-          for (const double k : field[0]) largest = std::max(largest, k);
+          for (std::size_t e = 0; e < scene.grid.lattice.size; ++e) largest = std::max<double>(largest, field[0][e]);
         }
         for (int q = 0; q < 3; ++q) {
           expectSame(gathered(rows.normal[q]), full.normal[q], 1.0, "J_s, normal");
@@ -363,8 +363,9 @@ TEST(FractionRows, OfAWideBodyAreThoseOfItsSurface) {
   everywhere.resize(grid.lattice, true);
   std::fill(everywhere.has_pressure.begin(), everywhere.has_pressure.end(), 1);
   for (int a = 0; a < 3; ++a) {
-    std::fill(everywhere.normal[a].begin(), everywhere.normal[a].end(), 1.0);
-    for (auto& field : everywhere.shear[a]) std::fill(field.begin(), field.end(), 1.0);
+    const std::vector<float> one(grid.lattice.size, 1.0F);
+    everywhere.normal[a].pack(grid.lattice, one);
+    for (auto& field : everywhere.shear[a]) field.pack(grid.lattice, one);
   }
   BodyRows rows;
   buildFractionRows(grid, solids, bodies, everywhere, rows);

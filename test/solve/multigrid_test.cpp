@@ -18,6 +18,8 @@ StaggeredCoefficients<double> box(const Lattice& l, double number, int fill) {
   StaggeredCoefficients<double> c;
   c.resize(l, number > 0.0);
   for (int k = 0; k < l.faceEnd(2); ++k) {
+    ViscousPlane plane;
+    if (number > 0.0) plane.unpack(c, k);
     for (int j = 0; j < l.faceEnd(1); ++j) {
       for (int i = 0; i < l.faceEnd(0); ++i) {
         const auto f = l.index(i, j, k);
@@ -28,7 +30,7 @@ StaggeredCoefficients<double> box(const Lattice& l, double number, int fill) {
           for (int b = 0; b < 3; ++b) inside = inside && at[b] < l.n[b] && (b != a || at[b] > 0);
           const bool wet = a == 2 ? k <= fill : k < fill;
           if (inside && wet) c.mass[a][f] = c.own_fluid[a][f] = 1.0;
-          if (number > 0.0 && c.has_pressure[f]) c.normal[a][f] = 2.0 * number;
+          if (number > 0.0 && c.has_pressure[f]) plane.normal[a][f - plane.begin] = 2.0 * number;
         }
         if (number <= 0.0) continue;
         for (int p = 0; p < 3; ++p) {
@@ -38,11 +40,12 @@ StaggeredCoefficients<double> box(const Lattice& l, double number, int fill) {
           // On a wall the difference is over half a cell, and the energy that of half a sample.
           const bool wall_a = at[b] == 0 || at[b] == l.n[b], wall_b = at[a] == 0 || at[a] == l.n[a];
           const double weight = std::sqrt(number * (wall_a || wall_b ? 0.5 : 1.0));
-          c.shear[p][0][f] = weight * (wall_a ? 2.0 : 1.0);
-          c.shear[p][1][f] = weight * (wall_b ? 2.0 : 1.0);
+          plane.shear[p][0][f - plane.begin] = weight * (wall_a ? 2.0 : 1.0);
+          plane.shear[p][1][f - plane.begin] = weight * (wall_b ? 2.0 : 1.0);
         }
       }
     }
+    if (number > 0.0) plane.pack(k, c);
   }
   return c;
 }

@@ -81,8 +81,10 @@ class StokesStencil : public testing::TestWithParam<Parameters> {
     const Parameters p = GetParam();
     l = Lattice(p.cells, p.periodic);
     c.resize(l, p.viscous);
-    if (p.viscous) {
-      for (auto& field : c.drag) field.assign(l.size, 0.0F);
+    FaceField<float> drag, normal;
+    std::array<FaceField<float>, 2> shear;  // by place
+    for (auto* fields : {&drag, &normal, &shear[0], &shear[1]}) {
+      for (auto& field : *fields) field.assign(l.size, 0.0F);
     }
     for (int k = 0; k < l.faceEnd(2); ++k) {
       for (int j = 0; j < l.faceEnd(1); ++j) {
@@ -97,9 +99,9 @@ class StokesStencil : public testing::TestWithParam<Parameters> {
             c.mass[a][f] = !has ? 0.0 : plain ? 1.0 : 0.1 + unit(random);
             c.own_fluid[a][f] = !has ? 0.0 : plain ? 1.0 : 0.1 + unit(random);
             if (!p.viscous) continue;
-            c.drag[a][f] = plain ? 0.0 : unit(random);
-            c.normal[a][f] = plain ? 2.0 : 3.0 * unit(random);
-            for (int s = 0; s < 2; ++s) c.shear[a][s][f] = plain ? 1.0 : 1.5 * unit(random);
+            drag[a][f] = plain ? 0.0 : unit(random);
+            normal[a][f] = plain ? 2.0 : 3.0 * unit(random);
+            for (int s = 0; s < 2; ++s) shear[s][a][f] = plain ? 1.0 : 1.5 * unit(random);
           }
           c.has_pressure[f] = i < l.n[0] && j < l.n[1] && k < l.n[2] && (plain || unit(random) > 0.2);
         }
@@ -108,7 +110,9 @@ class StokesStencil : public testing::TestWithParam<Parameters> {
     for (int a = 0; a < 3; ++a) {
       for (auto* field : {&c.mass[a], &c.own_fluid[a]}) fillHalo(l, *field);
       if (!p.viscous) continue;
-      for (auto* field : {&c.drag[a], &c.normal[a], &c.shear[a][0], &c.shear[a][1]}) fillHalo(l, *field);
+      c.drag[a].pack(l, drag[a]);
+      c.normal[a].pack(l, normal[a]);
+      for (int s = 0; s < 2; ++s) c.shear[a][s].pack(l, shear[s][a]);
     }
     for (int a = 0; a < 3; ++a) {
       U[a].assign(l.size, 0.0);
