@@ -31,8 +31,8 @@ float removeMean(const PressureRegion& region, float* field) {
 }  // namespace
 
 void LiquidPreconditioner::set(const StepProblem& problem, const FaceBlocks<float>& faces,
-                               const CellBlocks<float>& cells, const FaceField<float>& transfer,
-                               const FaceField<float>& impulse) {
+                               const CellBlocks<float>& cells, const FaceRows<float>& transfer,
+                               const FaceRows<float>& impulse) {
   problem_ = &problem;
   faces_ = &faces;
   cells_ = &cells;

@@ -26,7 +26,7 @@ class LiquidPreconditioner {
   // The problem and the compressed operator, with the fields that its construction gives besides, must outlive the
   // preconditioner.
   void set(const StepProblem& problem, const FaceBlocks<float>& faces, const CellBlocks<float>& cells,
-           const FaceField<float>& transfer, const FaceField<float>& impulse);
+           const FaceRows<float>& transfer, const FaceRows<float>& impulse);
 
   // x ~ the solution for right side r, its flux times flux_scale: U by components, then p^, lattice.size each. Halos of
   // x are filled, those of r not read.
@@ -39,7 +39,7 @@ class LiquidPreconditioner {
   VelocityMultigrid velocity_;
   PressureMultigrid pressure_;
   Permeability permeability_;
-  const FaceField<float>* impulse_ = nullptr;  // K
+  const FaceRows<float>* impulse_ = nullptr;  // K
   std::vector<float> g_, weight_;
   long build_ = -1;  // of the cells' blocks, that g_ has followed
 };

@@ -115,7 +115,7 @@ class PackedSystem {
   CellBlocks<float> cells_single_;
   BodyColumns<double> columns_;
   BodyColumns<float> columns_single_;
-  FaceField<float> transfer_, impulse_;  // of the finest level, see buildFaceBlocks()
+  FaceRows<float> transfer_, impulse_;  // of the finest level, see buildFaceBlocks()
   LiquidPreconditioner preconditioner_;
   RigidModes together_;
   std::vector<float> common_, left_;  // their part of a direction, and of a residual what it leaves

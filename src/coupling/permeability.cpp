@@ -17,7 +17,7 @@ constexpr float kLeastOpen = 0.7f, kMostOpen = 1.5f;
 }  // namespace
 
 void Permeability::set(const StepProblem& problem, double largest_number, VelocityMultigrid& velocity,
-                       const FaceField<float>& free) {
+                       const FaceRows<float>& free) {
   const Lattice& l = problem.grid.lattice;
   const StaggeredCoefficients<float>& level = problem.coarse.levels[1];
   lasted_ = generation_ == problem.coarse.generation();
@@ -29,16 +29,17 @@ void Permeability::set(const StepProblem& problem, double largest_number, Veloci
       for (float& k : field) k = std::max(k, least);
     }
   }
-  share_.resize(l.size);
+  RowField<float> share;
+  std::vector<float> held;
   for (int a = 0; a < 3; ++a) {
-    const auto &mass = problem.coefficients.mass[a], &fluid = problem.coefficients.fluid()[a];
-    assignZero(l.size, impulse_[a]);
-#pragma omp parallel for simd schedule(static)
-    for (std::size_t f = 0; f < l.size; ++f) share_[f] = mass[f] > 0.0 ? static_cast<float>(fluid[f] / mass[f]) : 0.0f;
-    prolongateFaces(level.lattice, a, coarse_[a].data(), l, allPlanes(l), share_.data(), impulse_[a].data());
-#pragma omp parallel for simd schedule(static)
-    for (std::size_t f = 0; f < l.size; ++f) impulse_[a][f] = std::min(free[a][f], impulse_[a][f]);
-    fillHalo(l, impulse_[a]);
+    const OpenParts<double> open = problem.coefficients.open(a);
+    const std::vector<double>& mass = problem.coefficients.mass[a];
+    share.transform(free[a], [&](std::ptrdiff_t f, float) {
+      return mass[f] > 0.0 ? static_cast<float>(open[f] / mass[f]) : 0.0F;
+    });
+    assignZero(l.size, held);
+    prolongateFaces(level.lattice, a, coarse_[a].data(), l, allPlanes(l), share, held.data());
+    impulse_[a].transform(free[a], [&](std::ptrdiff_t f, float impulse) { return std::min(impulse, held[f]); });
   }
   sharp_.resize(l.size);
   const float* viscosity = problem.cell_viscosity.empty() ? nullptr : problem.cell_viscosity.data();
@@ -47,7 +48,7 @@ void Permeability::set(const StepProblem& problem, double largest_number, Veloci
     std::fill_n(out, l.faceEnd(0), std::uint8_t{0});
     for (int a = 0; a < 3; ++a) {
       for (const auto at : {row, row + l.stride[a]}) {
-        const float* impulse = free[a].data() + at;
+        const float* impulse = free[a].row(at);
         const double* fluid = problem.coefficients.fluid()[a].data() + at;
         for (int i = 0; i < l.n[0]; ++i) {
           const float conductance = static_cast<float>(fluid[i]) * impulse[i];

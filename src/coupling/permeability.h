@@ -27,20 +27,20 @@ class Permeability {
   // largest_number: viscous number where the viscosity is largest. velocity: that of the problem, with more than one
   // level. free: the impulse of faces whose neighbours are held (buildFaceBlocks()).
   void set(const StepProblem& problem, double largest_number, VelocityMultigrid& velocity,
-           const FaceField<float>& free);
+           const FaceRows<float>& free);
   // Whether k itself is what it was at the call before.
   bool lasted() const { return lasted_; }
   void forget() { generation_ = -1; }
 
   // min(free, k open/mass) at each face, halo filled.
-  const FaceField<float>& impulse() const { return impulse_; }
+  const FaceRows<float>& impulse() const { return impulse_; }
   // Cells between which short waves of pressure matter all the same: next to a solid or the surface, or where the
   // viscosity is small.
   const std::vector<std::uint8_t>& sharp() const { return sharp_; }
 
  private:
-  FaceField<float> coarse_, impulse_;
-  std::vector<float> share_;  // kept for its memory
+  FaceField<float> coarse_;
+  FaceRows<float> impulse_;
   std::vector<std::uint8_t> sharp_;
   long generation_ = -1;  // of the coarse levels that k was found with
   bool lasted_ = false;

@@ -59,7 +59,7 @@ class VariableViscosity {
 
   double reference_ = 1.0;
   StrainScales scales_;
-  std::array<RowField<float>, 3> normal_, drag_;
+  FaceRows<float> normal_, drag_;
   std::array<std::array<RowField<float>, 2>, 3> shear_;
   std::array<std::vector<BodyRow>, 3> shear_rows_;
   std::vector<StaggeredCoefficients<float>> coarse_;

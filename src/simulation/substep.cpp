@@ -63,7 +63,17 @@ void Simulation::Impl::prepareSolve(const StepWeights& w) {
     return;
   }
   sampler.sample(plan.bodies, solids);
-  step_surface[0].advect(state.coupled.velocity, w.dt, state.liquid_speed, solids.cell_distance);
+  if (hasSurface()) {
+    FaceField<double>& ahead = scratch.other.velocity;
+    const double part = kSurfaceAhead * w.dt;
+    for (int a = 0; a < 3; ++a) {
+      const std::vector<double>&u = state.coupled.velocity[a], &rate = state.acceleration[a];
+      ahead[a].resize(u.size());
+#pragma omp parallel for simd schedule(static)
+      for (std::size_t i = 0; i < u.size(); ++i) ahead[a][i] = u[i] + part * rate[i];
+    }
+    step_surface[0].advect(ahead, w.dt, largestSpeed(ahead), solids.cell_distance);
+  }
   step_surface[0].extendIntoSolids(solids.cell_distance, solids.distance);
 }
 

@@ -29,7 +29,7 @@ double waveStep(double bound, double cell_width, double gravity, double kinemati
 }  // namespace
 
 double stableWaveStep(double cell_width, double gravity, double kinematic_viscosity) {
-  return waveStep(4.0, cell_width, gravity, kinematic_viscosity);
+  return waveStep(4.0 / (1.0 + 2.0 * kSurfaceAhead), cell_width, gravity, kinematic_viscosity);
 }
 
 double longestWaveStep(double cell_width, double gravity, double kinematic_viscosity) {

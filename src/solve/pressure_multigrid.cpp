@@ -52,7 +52,14 @@ const std::vector<float>& PressureMultigrid::FinestNetwork::allConductances(int 
   assignZero(lattice.size, room);
   float* to = room.data();
   forEachRow(lattice, [&](std::ptrdiff_t row, int, int) {
-    for (auto f = row; f < row + lattice.faceEnd(0); ++f) to[f] = conductance(axis, f);
+    const double* open = fluid[axis].data() + row;
+    const float* moved = impulse[axis].row(row);
+    const std::uint8_t *here = kinds.data() + row, *before = here - lattice.stride[axis];
+#pragma omp simd
+    for (int i = 0; i < lattice.faceEnd(0); ++i) {
+      const bool between = (here[i] == kLiquid) & (before[i] == kLiquid);
+      to[row + i] = between ? static_cast<float>(open[i]) * moved[i] : 0.0F;
+    }
   });
   fillHalo(lattice, room);
   return room;
@@ -60,7 +67,7 @@ const std::vector<float>& PressureMultigrid::FinestNetwork::allConductances(int 
 
 // First which cells have a pressure; those around tell the rest.
 void PressureMultigrid::findKinds(const Lattice& l, const std::vector<std::uint8_t>& has_pressure,
-                                  const FaceField<double>& fluid, const FaceField<float>& impulse,
+                                  const FaceField<double>& fluid, const FaceRows<float>& impulse,
                                   const SteadyRows* steady) {
   const bool keeps = levels_[0].blocks.wouldKeep(steady) && kinds_.size() == l.size;
   const auto keepsRow = [&](int j, int k) { return keeps && steady->steady(j, k); };
@@ -84,7 +91,7 @@ void PressureMultigrid::findKinds(const Lattice& l, const std::vector<std::uint8
 }
 
 void PressureMultigrid::set(const Lattice& l, const std::vector<std::uint8_t>& has_pressure,
-                            const FaceField<double>& fluid, const FaceField<float>& impulse, const SteadyRows* steady,
+                            const FaceField<double>& fluid, const FaceRows<float>& impulse, const SteadyRows* steady,
                             const std::vector<std::uint8_t>* smoothed) {
   std::size_t count = 1;
   for (Lattice c = l; canCoarsen(c); c = coarsened(c)) ++count;

@@ -26,7 +26,7 @@ class PressureMultigrid {
   // smoothed: cells that are smoothed on the finest level, the others only take what the coarser ones have found; null:
   // all.
   void set(const Lattice& lattice, const std::vector<std::uint8_t>& has_pressure, const FaceField<double>& fluid,
-           const FaceField<float>& impulse, const SteadyRows* steady = nullptr,
+           const FaceRows<float>& impulse, const SteadyRows* steady = nullptr,
            const std::vector<std::uint8_t>* smoothed = nullptr);
 
   // The next set() takes no row for steady.
@@ -77,7 +77,7 @@ class PressureMultigrid {
   struct FinestNetwork {
     const Lattice& lattice;
     const FaceField<double>& fluid;
-    const FaceField<float>& impulse;
+    const FaceRows<float>& impulse;
     const std::vector<std::uint8_t>& kinds;
 
     float whole(int axis, std::ptrdiff_t face) const {
@@ -94,7 +94,7 @@ class PressureMultigrid {
   };
 
   void findKinds(const Lattice& lattice, const std::vector<std::uint8_t>& has_pressure, const FaceField<double>& fluid,
-                 const FaceField<float>& impulse, const SteadyRows* steady);
+                 const FaceRows<float>& impulse, const SteadyRows* steady);
   template <class SomeNetwork>
   void coarsen(const Lattice& from, const SomeNetwork& fine, const Lattice& l, Network& coarse) const;
   template <class SomeNetwork>

@@ -4,6 +4,7 @@
 // and read by rows.
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstring>
 #include <memory>
@@ -141,5 +142,9 @@ class RowField {
   std::vector<std::shared_ptr<const std::vector<Value>>> planes_;  // the rows that differ
   std::vector<const Value*> rows_;                                 // of every plane
 };
+
+// One for the faces of each axis.
+template <class Value>
+using FaceRows = std::array<RowField<Value>, 3>;
 
 }  // namespace monolith

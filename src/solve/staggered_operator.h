@@ -52,8 +52,8 @@ struct StaggeredCoefficients {
   // Part of it that is not solid: own, or somebody's field, which must outlive the coefficients' use.
   FaceField<Real> own_fluid;
   const FaceField<Real>* others_fluid = nullptr;
-  std::array<RowField<float>, 3> drag;                  // tie of a face to the solid it lies in
-  std::array<RowField<float>, 3> normal;                // per cell and axis
+  FaceRows<float> drag;                                 // tie of a face to the solid it lies in
+  FaceRows<float> normal;                               // per cell and axis
   std::array<std::array<RowField<float>, 2>, 3> shear;  // per pair: factor of the first, of the second component
   std::vector<std::uint8_t> has_pressure;               // per cell
 

@@ -34,7 +34,7 @@ void restrictResidual(const Lattice& fine, const float* from, const Lattice& coa
 
 // to += weight * interpolation of `from`; the halo of `from` must be filled.
 void prolongateFaces(const Lattice& coarse, int axis, const float* from, const Lattice& fine, const Planes& planes,
-                     const float* weight, float* to);
+                     const RowField<float>& weight, float* to);
 // to += interpolation of `from` where mask > 0; the halo of `from` must be filled.
 void prolongateCells(const Lattice& coarse, const float* from, const Lattice& fine, const Planes& planes,
                      const float* mask, float* to);

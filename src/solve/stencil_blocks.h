@@ -89,6 +89,20 @@ class StencilBlocks : private StencilLayout {
     }
   }
 
+  // f(component, place, values): for the blocks of a plane, of an operator that was built, not converted.
+  template <class BlockFunction>
+  void forEachOfPlane(int k, BlockFunction&& f) const {
+    const Plane& plane = planes_[k];
+    const int rows = lattice_.faceEnd(1), components = static_cast<int>(plane.row_begin.size() - 1) / rows;
+    for (int component = 0; component < components; ++component) {
+      for (auto b = plane.row_begin[component * rows]; b < plane.row_begin[(component + 1) * rows]; ++b) {
+        f(component, static_cast<std::ptrdiff_t>(plane.blocks[b].place), plane.pattern(plane.blocks[b].pattern));
+      }
+    }
+  }
+  // Whether the plane may not be what it was in the build before.
+  bool changed(int k) const { return changed_[k] != 0; }
+
   // Those that have blocks.
   Planes planes() const { return with_blocks_; }
   std::size_t blocks() const { return segments_.empty() ? 0 : segments_.back().end; }

@@ -33,6 +33,7 @@ struct FaceStencil {
     kInverse = 11,  // 1 over the smoothing diagonal
     kTransfer,      // share of a correction that comes from the coarser level: 1 - tie to solids/diagonal
     kOpen,
+    kImpulse,  // open/effective mass: what a difference of pressure gives a face while viscosity holds its neighbours
     kCount
   };
 };
@@ -50,12 +51,11 @@ using CellBlocks = StencilBlocks<Real, CellStencil::kCount>;
 template <class Real>
 using Faces = std::array<Real*, 3>;
 
-// Compresses a level. transfer and impulse (open/effective mass: what a difference of pressure gives a face while
-// viscosity holds its neighbours) are those per face, as fields; either may be null. Of steady rows what is there is
-// kept.
+// Compresses a level. transfer and impulse are those of the stencils, as fields; either may be null. Of steady rows what
+// is there is kept.
 template <class Real, class From>
-void buildFaceBlocks(const StaggeredCoefficients<From>& c, FaceBlocks<Real>& out, FaceField<float>* transfer,
-                     FaceField<float>* impulse, const SteadyRows* steady = nullptr);
+void buildFaceBlocks(const StaggeredCoefficients<From>& c, FaceBlocks<Real>& out, FaceRows<float>* transfer,
+                     FaceRows<float>* impulse, const SteadyRows* steady = nullptr);
 template <class Real, class From>
 void buildCellBlocks(const StaggeredCoefficients<From>& c, CellBlocks<Real>& out, const SteadyRows* steady = nullptr);
 
@@ -89,7 +89,7 @@ void transferredResidual(const Lattice& l, const FaceBlocks<float>& blocks, cons
                          const Faces<const float>& b, const Faces<float>& r);
 // y = x + impulse times the difference of p, on all faces of these planes: y is x where the impulse is zero. Halos are
 // not filled.
-void project(const Lattice& l, const Planes& planes, const FaceField<float>& impulse, const Faces<const float>& x,
+void project(const Lattice& l, const Planes& planes, const FaceRows<float>& impulse, const Faces<const float>& x,
              const float* p, const Faces<float>& y);
 
 }  // namespace monolith

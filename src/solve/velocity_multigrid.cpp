@@ -17,7 +17,7 @@ Faces<const float> constView(const Faces<float>& f) { return {f[0], f[1], f[2]};
 
 }  // namespace
 
-void VelocityMultigrid::set(const Lattice& lattice, const FaceBlocks<float>& fine, const FaceField<float>& transfer,
+void VelocityMultigrid::set(const Lattice& lattice, const FaceBlocks<float>& fine, const FaceRows<float>& transfer,
                             const std::vector<StaggeredCoefficients<float>>& coarse, std::size_t count,
                             long generation, int smoother_degree) {
   degree_ = smoother_degree;
@@ -75,7 +75,7 @@ void VelocityMultigrid::descend(std::size_t index) {
   }
   cycleFrom(index + 1, constView(coarse.b), view(coarse.own_x));
   for (int a = 0; a < 3; ++a) {
-    prolongateFaces(coarse.lattice, a, coarse.own_x[a].data(), l, level.blocks->planes(), (*level.transfer)[a].data(),
+    prolongateFaces(coarse.lattice, a, coarse.own_x[a].data(), l, level.blocks->planes(), (*level.transfer)[a],
                     level.x[a]);
     fillHalo(l, level.x[a]);
   }

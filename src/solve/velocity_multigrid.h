@@ -20,7 +20,7 @@ class VelocityMultigrid {
   // The finest level with its transfer weights, and the levels below it: coarse[1] to coarse[count - 1], each
   // coarsened() of the one before. `fine` and `transfer` must outlive the multigrid. generation: of the coarse levels,
   // which are what they were if it is the last one. smoother_degree: Chebyshev steps before and after.
-  void set(const Lattice& lattice, const FaceBlocks<float>& fine, const FaceField<float>& transfer,
+  void set(const Lattice& lattice, const FaceBlocks<float>& fine, const FaceRows<float>& transfer,
            const std::vector<StaggeredCoefficients<float>>& coarse, std::size_t count, long generation,
            int smoother_degree);
   // Approximate solution x of A x = b. x is zero where there is no unknown, before and after; its halo is filled.
@@ -33,8 +33,9 @@ class VelocityMultigrid {
     Lattice lattice;
     FaceBlocks<float> own;
     const FaceBlocks<float>* blocks = nullptr;
-    FaceField<float> own_transfer, own_x, own_next, b, d;  // own_x: of coarse levels
-    const FaceField<float>* transfer = nullptr;
+    FaceRows<float> own_transfer;
+    FaceField<float> own_x, own_next, b, d;  // own_x: of coarse levels
+    const FaceRows<float>* transfer = nullptr;
     ChebyshevRange range;
     Faces<const float> right{};
     // Of a cycle: an iterate and the next take turns.

@@ -38,7 +38,7 @@ struct Plates {
   std::vector<RigidBody> bodies;
   SolidFractions solids;
   std::unique_ptr<StepProblem> problem;
-  FaceField<float> transfer, free;
+  FaceRows<float> transfer, free;
   FaceBlocks<float> single;
   VelocityMultigrid velocity;
   Permeability permeability;
@@ -74,7 +74,7 @@ TEST(Permeability, BetweenPlatesIsBrinkmans) {
 TEST(Permeability, LastsWhileTheCoarseLevelsDo) {
   Plates plates(30.0);
   EXPECT_FALSE(plates.permeability.lasted());
-  const FaceField<float> before = plates.permeability.impulse();
+  const FaceRows<float> before = plates.permeability.impulse();
   plates.permeability.set(*plates.problem, 30.0, plates.velocity, plates.free);
   EXPECT_TRUE(plates.permeability.lasted());
   EXPECT_EQ(plates.permeability.impulse(), before);

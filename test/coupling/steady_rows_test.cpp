@@ -77,7 +77,7 @@ struct Built {
   CellBlocks<double> cells;
   FaceBlocks<float> single;
   CellBlocks<float> single_cells;
-  FaceField<float> transfer, impulse;
+  FaceRows<float> transfer, impulse;
   PressureMultigrid pressure;
   VelocityMultigrid velocity;
   bool skipped = false;  // this moment

@@ -100,7 +100,7 @@ struct VelocityCase {
   }
   Lattice l;
   FaceBlocks<float> blocks;
-  FaceField<float> transfer;
+  FaceRows<float> transfer;
   std::vector<StaggeredCoefficients<float>> coarse;
   VelocityMultigrid multigrid;
   std::vector<float> x, b, r, zero;
@@ -186,7 +186,7 @@ struct PressureCase {
   Lattice l;
   StaggeredCoefficients<double> c;
   CellBlocks<float> cells;
-  FaceField<float> impulse;
+  FaceRows<float> impulse;
 };
 
 // Factor of the residual over a cycle.

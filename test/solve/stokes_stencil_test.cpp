@@ -160,7 +160,7 @@ class StokesStencil : public testing::TestWithParam<Parameters> {
   std::vector<double> p_;
   FaceBlocks<double> faces;
   CellBlocks<double> cells;
-  FaceField<float> transfer, impulse;
+  FaceRows<float> transfer, impulse;
 };
 
 TEST_P(StokesStencil, MomentumAndPressureForceAreThePlainOnes) {
