@@ -8,6 +8,7 @@
 #include "coupling/narrow_gaps.h"
 #include "coupling/stokes_coefficients.h"
 #include "geometry/wall_thickness.h"
+#include "solve/marked_entries.h"
 
 namespace monolith {
 namespace {
@@ -90,15 +91,28 @@ std::vector<Matrix6d> attachStickingLiquid(const MacGrid& grid, const std::vecto
     const auto& distance = solids.distance[a];
     const auto& owner = solids.owner[a];
     auto& fluid = solids.fluid[a];
+    thread_local RowMarks marks;
     for (int j = 0; j < l.faceEnd(1); ++j) {
       // Far from all of them and from the walls beside it only a row's ends are next to a solid.
       const bool between =
           !near_body[j + static_cast<std::size_t>(l.faceEnd(1)) * k] && isClear(l, 1, j) && isClear(l, 2, k);
-      for (int i = 0; i < l.faceEnd(0); ++i) {
-        if (between && i == kBesideWall) i = std::max(i, l.faceEnd(0) - kBesideWall);
-        const auto f = l.index(i, j, k);
+      const auto row = l.index(0, j, k);
+      std::uint8_t* next_to_solid = marks.start(l.faceEnd(0));
+      const auto markFaces = [&](int begin, int end) {
+        const double* of_liquid = fluid.data() + row;
+        const float* away = distance.data() + row;
+#pragma omp simd
+        for (int i = begin; i < end; ++i) next_to_solid[i] = (of_liquid[i] > 0.0) & (away[i] < 1.0F);
+      };
+      if (between && l.faceEnd(0) > 2 * kBesideWall) {
+        markFaces(0, kBesideWall);
+        markFaces(l.faceEnd(0) - kBesideWall, l.faceEnd(0));
+      } else {
+        markFaces(0, l.faceEnd(0));
+      }
+      marks.forEach([&](std::ptrdiff_t i) {
+        const auto f = row + i;
         const double here = distance[f];
-        if (!(fluid[f] > 0.0) || here >= 1.0) continue;
         double kept = 0.0;
         int body = owner[f];
         if (here > 0.0) {
@@ -124,10 +138,10 @@ std::vector<Matrix6d> attachStickingLiquid(const MacGrid& grid, const std::vecto
             kept = std::min(kept, share);
           }
         }
-        if (kept >= fluid[f]) continue;
+        if (kept >= fluid[f]) return;
         if (body >= 0 || kept == 0.0) found[at].push_back({a, f, body, fluid[f] - kept});
         fluid[f] = kept;
-      }
+      });
     }
   }
   std::vector<StickingPart> parts;

@@ -3,10 +3,9 @@
 
 #include <array>
 #include <cstdint>
-#include <cstring>
-#include <vector>
 
 #include "solve/lattice.h"
+#include "solve/marked_entries.h"
 
 namespace monolith {
 
@@ -17,25 +16,18 @@ void forEachNextToKnown(const Lattice& l, int k, const std::uint8_t* known, Func
   const auto sy = l.stride[1], sz = l.stride[2];
   const auto begin = l.index(0, 0, k);
   const auto count = l.index(l.faceEnd(0) - 1, l.faceEnd(1) - 1, k) + 1 - begin;
-  thread_local std::vector<std::uint8_t> next;
-  next.assign((count + 7) / 8 * 8, 0);
-  std::uint8_t* out = next.data();
+  thread_local RowMarks next;
+  std::uint8_t* out = next.start(count);
   const std::uint8_t* at = known + begin;
 #pragma omp simd
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const std::uint8_t around = at[i - 1] | at[i + 1] | at[i - sy] | at[i + sy] | at[i - sz] | at[i + sz];
     out[i] = static_cast<std::uint8_t>(around & (at[i] ^ 1));
   }
-  for (std::ptrdiff_t eight = 0; eight < count; eight += 8) {
-    std::uint64_t any;
-    std::memcpy(&any, out + eight, 8);
-    if (any == 0) continue;
-    for (auto i = eight; i < eight + 8; ++i) {
-      if (!out[i]) continue;
-      const std::array<int, 3> place = {static_cast<int>(i % sy), static_cast<int>(i / sy), k};
-      if (place[0] < l.faceEnd(0)) f(begin + i, place);
-    }
-  }
+  next.forEach([&](std::ptrdiff_t i) {
+    const std::array<int, 3> place = {static_cast<int>(i % sy), static_cast<int>(i / sy), k};
+    if (place[0] < l.faceEnd(0)) f(begin + i, place);
+  });
 }
 
 }  // namespace monolith

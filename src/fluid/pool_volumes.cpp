@@ -31,8 +31,10 @@ double FreeSurface::partInLiquid(double distance, const Eigen::Vector3d& slope) 
 FreeSurface::Pools FreeSurface::findPools(const std::vector<double>& cell_fluid, const FaceField<double>& open) const {
   const Lattice& l = grid_.lattice;
   std::vector<std::uint8_t> has(l.size);
+  const double *distance = distance_.data(), *fluid = cell_fluid.data();
+  std::uint8_t* in_liquid = has.data();
 #pragma omp parallel for simd schedule(static)
-  for (std::size_t c = 0; c < l.size; ++c) has[c] = (distance_[c] < 0.0) & (cell_fluid[c] > 0.0);
+  for (std::size_t c = 0; c < l.size; ++c) in_liquid[c] = (distance[c] < 0.0) & (fluid[c] > 0.0);
   // Through all of them, whether there is liquid or not.
   const auto part = [&](int a) { return OpenParts<double>{open[a].data(), open[a].data()}; };
   ConnectedRuns runs(l, has, {part(0), part(1), part(2)});

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "fluid/free_surface.h"
 #include "fluid/level_set.h"
+#include "solve/marked_entries.h"
 #include "solve/neighbours.h"
 #include "solve/whole_fields.h"
 
@@ -14,19 +16,17 @@ namespace {
 constexpr int kThickestWall = 5;  // cells: what is thicker is a body, whose sides are the same surface
 constexpr int kWayAround = 3;     // cells: so near to its edge a wall does not divide
 
-// Solution of the discrete eikonal equation at a cell from its nearest neighbours along each axis.
-double eikonal(std::array<double, 3> d) {
-  std::sort(d.begin(), d.end());
-  double x = d[0] + 1.0;
-  if (x > d[1]) {
-    x = 0.5 * (d[0] + d[1] + std::sqrt(std::max(0.0, 2.0 - (d[0] - d[1]) * (d[0] - d[1]))));
-    if (x > d[2]) {
-      const double sum = d[0] + d[1] + d[2];
-      const double squares = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-      x = (sum + std::sqrt(std::max(0.0, sum * sum - 3.0 * (squares - 1.0)))) / 3.0;
-    }
-  }
-  return x;
+// Solution of the discrete eikonal equation at a cell from its nearest neighbours along each axis, least <= middle <=
+// most. Without branches, for the vector units.
+inline double eikonal(double least, double middle, double most) {
+  const double of_one = least + 1.0;
+  const double difference = least - middle;
+  const double of_two = 0.5 * (least + middle + std::sqrt(std::max(0.0, 2.0 - difference * difference)));
+  const double sum = least + middle + most;
+  const double squares = least * least + middle * middle + most * most;
+  const double of_three = (sum + std::sqrt(std::max(0.0, sum * sum - 3.0 * (squares - 1.0)))) / 3.0;
+  const double of_more = of_two > most ? of_three : of_two;
+  return of_one > middle ? of_more : of_one;
 }
 
 // Of a row of cells.
@@ -38,15 +38,26 @@ struct Range {
 // settled. Around the row it reads the other colour only, which other threads do not write meanwhile.
 Range relaxRow(const Lattice& l, std::ptrdiff_t row, int first, const std::uint8_t* fixed, double settled,
                std::vector<double>& field) {
-  const int width = l.n[0];
+  const int width = l.n[0], count = (width - first + 1) / 2;
   double* d = field.data() + row;
-  for (int i = first; i < width; i += 2) {
-    if (fixed[row + i] || d[i] <= settled) continue;
-    std::array<double, 3> nearest;
-    for (int a = 0; a < 3; ++a) nearest[a] = std::min(d[i - l.stride[a]], d[i + l.stride[a]]);
-    if (std::min({nearest[0], nearest[1], nearest[2]}) >= kLevelSetBand) continue;
-    d[i] = std::min(d[i], eikonal(nearest));
+  thread_local std::vector<double> relaxed;
+  relaxed.resize(count);
+  double* next = relaxed.data();
+  const double* of_colour = d + first;
+  const std::uint8_t* is_fixed = fixed + row + first;
+  const auto sy = l.stride[1], sz = l.stride[2];
+#pragma omp simd
+  for (int q = 0; q < count; ++q) {
+    const double* at = of_colour + 2 * q;
+    const double here = at[0];
+    const double x = std::min(at[-1], at[1]), y = std::min(at[-sy], at[sy]), z = std::min(at[-sz], at[sz]);
+    const double low = std::min(x, y), high = std::max(x, y);
+    const double least = std::min(low, z), most = std::max(high, z), middle = std::max(low, std::min(high, z));
+    const bool keeps = (is_fixed[2 * q] != 0) | (here <= settled) | (least >= kLevelSetBand);
+    const double other = std::min(here, eikonal(least, middle, most));
+    next[q] = keeps ? here : other;
   }
+  for (int q = 0; q < count; ++q) d[first + 2 * q] = next[q];
   double least = kLevelSetFar, most = 0.0;
 #pragma omp simd reduction(min : least) reduction(max : most)
   for (int i = 0; i < width; ++i) {
@@ -137,12 +148,24 @@ class SolidCells {
 // How near to the surface a cell is. kNextAtSolid: it is solid, or its neighbour across the surface.
 enum Nearness : std::uint8_t { kAway, kNext, kNextAtSolid };
 
+// f(cell, {i, j, k}): for cells that lie on the other side of the surface than one of their neighbours.
 template <class Function>
-void forEachCell(const Lattice& l, Function&& f) {
+void forEachCrossed(const Lattice& l, const std::vector<double>& level_set, Function&& f) {
+  const auto sy = l.stride[1], sz = l.stride[2];
 #pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int k = 0; k < l.n[2]; ++k) {
+    thread_local RowMarks crossed;
     for (int j = 0; j < l.n[1]; ++j) {
-      for (int i = 0; i < l.n[0]; ++i) f(l.index(i, j, k), std::array<int, 3>{i, j, k});
+      const auto row = l.index(0, j, k);
+      const double* d = level_set.data() + row;
+      std::uint8_t* mark = crossed.start(l.n[0]);
+#pragma omp simd
+      for (int i = 0; i < l.n[0]; ++i) {
+        const bool in = d[i] < 0.0;
+        mark[i] = (in != (d[i - 1] < 0.0)) | (in != (d[i + 1] < 0.0)) | (in != (d[i - sy] < 0.0)) |
+                  (in != (d[i + sy] < 0.0)) | (in != (d[i - sz] < 0.0)) | (in != (d[i + sz] < 0.0));
+      }
+      crossed.forEach([&](std::ptrdiff_t i) { f(row + i, std::array<int, 3>{static_cast<int>(i), j, k}); });
     }
   }
 }
@@ -150,7 +173,7 @@ void forEachCell(const Lattice& l, Function&& f) {
 // Cells next to the surface: the distance to the plane that the level set is there.
 void measureNext(const Lattice& l, const std::vector<double>& level_set, const SolidCells& solids,
                  std::vector<std::uint8_t>& nearness, std::vector<double>& distance) {
-  forEachCell(l, [&](std::ptrdiff_t c, const std::array<int, 3>& cell) {
+  forEachCrossed(l, level_set, [&](std::ptrdiff_t c, const std::array<int, 3>& cell) {
     const double d = level_set[c];
     Nearness near = kAway;
     double slope2 = 0.0;
@@ -184,11 +207,15 @@ void measureNext(const Lattice& l, const std::vector<double>& level_set, const S
 // with no velocity of its own: it counts only where the surface ends at the solid.
 void dropFilms(const Lattice& l, std::vector<std::uint8_t>& nearness, std::vector<double>& distance) {
   std::vector<std::vector<std::ptrdiff_t>> films(l.n[2]);  // by plane
-  forEachCell(l, [&](std::ptrdiff_t c, const std::array<int, 3>& cell) {
-    if (nearness[c] != kNextAtSolid) return;
-    bool ends = false;
-    forEachNeighbour(l, c, [&](std::ptrdiff_t next, int, int) { ends = ends || nearness[next] == kNext; });
-    if (!ends) films[cell[2]].push_back(c);
+  forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
+    if (j >= l.n[1] || k >= l.n[2]) return;
+    if (std::memchr(nearness.data() + row, kNextAtSolid, l.n[0]) == nullptr) return;
+    for (auto c = row; c < row + l.n[0]; ++c) {
+      if (nearness[c] != kNextAtSolid) continue;
+      bool ends = false;
+      forEachNeighbour(l, c, [&](std::ptrdiff_t next, int, int) { ends = ends || nearness[next] == kNext; });
+      if (!ends) films[k].push_back(c);
+    }
   });
   for (const auto& plane : films) {
     for (const auto c : plane) {
@@ -203,9 +230,13 @@ void dropFilms(const Lattice& l, std::vector<std::uint8_t>& nearness, std::vecto
 // least to the distance.
 void spread(const Lattice& l, const std::vector<std::uint8_t>& nearness, std::vector<double>& distance) {
   RowRanges ranges(l);
-  forEachCell(l, [&](std::ptrdiff_t c, const std::array<int, 3>& cell) {
-    Range& range = ranges.at(cell[1], cell[2]);
-    range.least = std::min(range.least, distance[c]);
+  forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
+    if (j >= l.n[1] || k >= l.n[2]) return;
+    const double* d = distance.data() + row;
+    double least = kLevelSetFar;
+#pragma omp simd reduction(min : least)
+    for (int i = 0; i < l.n[0]; ++i) least = std::min(least, d[i]);
+    ranges.at(j, k).least = least;
   });
   const int passes = static_cast<int>(std::ceil(kLevelSetBand * std::sqrt(3.0))) + 1;
   for (int pass = 0; pass < passes; ++pass) {
