@@ -25,15 +25,17 @@ void octantFractions(const SignedDistance& solid, const Eigen::Vector3d& center,
       out[o] = distance < 0.0 ? 1.0 : 0.0;
       continue;
     }
-    double sum = 0.0;
+    CutCubes cubes;
+    std::array<bool, 8> cut, inside;
     for (int q = 0; q < 8; ++q) {
       const DistanceSample s = solid.sample(octant + 0.125 * width * corner[q]);
-      if (std::abs(s.distance) > kHalfDiagonal * 0.25 * width) {
-        sum += s.distance < 0.0 ? 1.0 : 0.0;
-        continue;
-      }
-      sum += insideFraction(s.distance, R_WB * s.gradient, 0.25 * width);
+      cut[q] = !(std::abs(s.distance) > kHalfDiagonal * 0.25 * width);
+      inside[q] = s.distance < 0.0;
+      if (cut[q]) cubes.set(q, s.distance, R_WB * s.gradient);
     }
+    insideFractions(cubes, 0.25 * width);
+    double sum = 0.0;
+    for (int q = 0; q < 8; ++q) sum += cut[q] ? cubes.inside[q] : inside[q] ? 1.0 : 0.0;
     out[o] = 0.125 * sum;
   }
 }

@@ -111,8 +111,18 @@ Eigen::VectorXd FreeSurface::shiftedVolumes(const Eigen::VectorXd& shifts, CutCe
   for (int k = 0; k < planes; ++k) {
     CutPlane& plane = cut[k];
     plane.sum = plane.full;
-    for (const CutCell& cell : plane.cells) {
-      plane.sum[cell.pool] += partInLiquid(cell.distance + shifts[cell.pool], cell.slope) * cell.fluid;
+    const std::size_t count = plane.cells.size();
+    for (std::size_t first = 0; first < count; first += CutCubes::kCount) {
+      const CutCell* cells = plane.cells.data() + first;
+      const int at_once = static_cast<int>(std::min<std::size_t>(CutCubes::kCount, count - first));
+      CutCubes cubes;
+      for (int i = 0; i < at_once; ++i) cubes.set(i, cells[i].distance + shifts[cells[i].pool], cells[i].slope);
+      insideFractions(cubes, 1.0);
+      for (int i = 0; i < at_once; ++i) {
+        const double distance = cubes.distance[i];
+        const double part = distance > 1.0 ? 0.0 : distance > -1.0 ? cubes.inside[i] : 1.0;
+        plane.sum[cells[i].pool] += part * cells[i].fluid;
+      }
     }
   }
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(shifts.size());

@@ -65,6 +65,26 @@ TEST(CubeFraction, NearlyParallelPlanesKeepTheirDigits) {
   }
 }
 
+TEST(CubeFraction, EightAtOnceAreAsOneByOne) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  constexpr double kWidth = 0.25;
+  for (int trial = 0; trial < 1000; ++trial) {
+    CutCubes cubes;
+    std::array<double, CutCubes::kCount> expected{};
+    for (int i = 0; i < CutCubes::kCount; ++i) {
+      if (i == trial % CutCubes::kCount) continue;  // not set: it has no plane
+      Eigen::Vector3d slope(unit(random), unit(random), unit(random));
+      if (trial % 5 == 1) slope[trial % 3] = 0.0;
+      const double distance = kWidth * unit(random);
+      cubes.set(i, distance, slope);
+      expected[i] = insideFraction(distance, slope, kWidth);
+    }
+    insideFractions(cubes, kWidth);
+    for (int i = 0; i < CutCubes::kCount; ++i) EXPECT_NEAR(cubes.inside[i], expected[i], 1e-12);
+  }
+}
+
 TEST(CubeFraction, FarPlanesAreAllOrNothing) {
   EXPECT_EQ(insideFraction(2.0, Eigen::Vector3d::UnitX(), 1.0), 0.0);
   EXPECT_EQ(insideFraction(-2.0, Eigen::Vector3d::UnitX(), 1.0), 1.0);
