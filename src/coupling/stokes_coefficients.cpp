@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "coupling/stokes_samples.h"
 #include "solve/staggered_transfer.h"
@@ -195,11 +196,19 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
     for (; j < l.faceEnd(1); ++j) {
       if (keeps(j, k)) continue;
       const std::ptrdiff_t row = l.index(0, j, k);
-      for (auto& field : plane.drag) std::fill_n(field.data() + (row - plane.begin), width, 0.0F);
+      const std::ptrdiff_t at = row - plane.begin;
+      for (auto& field : plane.drag) std::fill_n(field.data() + at, width, 0.0F);
       samples.markCells(row, width, mark);
-      buildPlainRow(samples, viscous_number, row, mark, plane);
+      if (std::memchr(mark.data(), SampleBuilder::kPlain, width) != nullptr) {
+        buildPlainRow(samples, viscous_number, row, mark, plane);
+      } else {
+        for (auto& field : plane.normal) std::fill_n(field.data() + at, width, 0.0F);
+        for (auto& pair : plane.shear) {
+          for (auto& field : pair) std::fill_n(field.data() + at, width, 0.0F);
+        }
+      }
       for (int i = 0; i < width; ++i) {
-        if (mark[i] == SampleBuilder::kAllAir || (mark[i] == SampleBuilder::kPlain && strain == nullptr)) continue;
+        if (mark[i] == SampleBuilder::kStill || (mark[i] == SampleBuilder::kPlain && strain == nullptr)) continue;
         buildSamples(samples, out, viscous_number, row + i, plane, strain);
       }
     }

@@ -46,13 +46,12 @@ void findFaceKinds(const Lattice& l, const StokesGeometry& g, const StaggeredCoe
 }
 
 void SampleBuilder::markCells(std::ptrdiff_t row, int width, std::vector<std::uint8_t>& mark) const {
-  // Of the two bits of a kind both or none are set outside of solids.
+  // Of the two bits of a kind both or none are set outside of solids, and the high one where nothing moves.
   static_assert(static_cast<int>(FaceKind::kFluid) == 0 && static_cast<int>(FaceKind::kSliver) == 1 &&
                 static_cast<int>(FaceKind::kSolid) == 2 && static_cast<int>(FaceKind::kAir) == 3);
-  constexpr auto kAir = static_cast<std::uint8_t>(FaceKind::kAir);
   mark.assign(2 * width, 0);
   std::uint8_t* solid = mark.data();
-  std::uint8_t* unlike_air = mark.data() + width;
+  std::uint8_t* moving = mark.data() + width;
   for (int a = 0; a < 3; ++a) {
     const auto* kind = reinterpret_cast<const std::uint8_t*>(kinds_[a].data()) + row;
     const auto s = lattice.stride[a];
@@ -62,12 +61,12 @@ void SampleBuilder::markCells(std::ptrdiff_t row, int width, std::vector<std::ui
     for (int i = 0; i < width; ++i) {
       const std::uint8_t here = kind[i], next = kind[i + s], b = kind[i - sb], c = kind[i - sc];
       solid[i] |= (here ^ (here >> 1)) | (next ^ (next >> 1)) | (b ^ (b >> 1)) | (c ^ (c >> 1));
-      unlike_air[i] |= (here ^ kAir) | (next ^ kAir) | (b ^ kAir) | (c ^ kAir);
+      moving[i] |= (here & next & b & c) ^ 2;
     }
   }
-  for (int i = 0; i < width; ++i) {
-    mark[i] = unlike_air[i] == 0 ? kAllAir : (solid[i] & 1) == 0 ? kPlain : kMixed;
-  }
+  std::uint8_t* out = mark.data();
+#pragma omp simd
+  for (int i = 0; i < width; ++i) out[i] = (moving[i] & 2) == 0 ? kStill : (solid[i] & 1) == 0 ? kPlain : kMixed;
   mark.resize(width);
 }
 

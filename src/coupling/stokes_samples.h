@@ -41,8 +41,8 @@ class SampleBuilder {
     return liquidOfCube(0.25 * (d[c] + d[c - sa] + d[c - sb] + d[c - sa - sb]));
   }
   // What a row of cells is like: plain if none of the faces that the samples of a cell join is in a solid or cut by
-  // one; air if all are in the air, where there are no samples.
-  enum Mark : std::uint8_t { kPlain, kMixed, kAllAir };
+  // one; still if all are solid or in the air, where the samples are nothing.
+  enum Mark : std::uint8_t { kPlain, kMixed, kStill };
   void markCells(std::ptrdiff_t row, int width, std::vector<std::uint8_t>& mark) const;
 
   const Lattice& lattice;

@@ -6,6 +6,7 @@
 #include "fluid/advection.h"
 #include "fluid/interpolation.h"
 #include "fluid/level_set.h"
+#include "solve/marked_entries.h"
 #include "solve/whole_fields.h"
 
 namespace monolith {
@@ -142,11 +143,16 @@ void FreeSurface::extendIntoSolids(const std::vector<float>& solid_distance, con
   copyField(distance_, scratch_.field);
 #pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int k = 0; k < l.n[2]; ++k) {
+    thread_local RowMarks marks;
     for (int j = 0; j < l.n[1]; ++j) {
-      for (int i = 0; i < l.n[0]; ++i) {
-        const auto c = l.index(i, j, k);
+      const auto row = l.index(0, j, k);
+      std::uint8_t* in_solid = marks.start(l.n[0]);
+      const float* distance = solid_distance.data() + row;
+#pragma omp simd
+      for (int i = 0; i < l.n[0]; ++i) in_solid[i] = distance[i] <= 0.0F;
+      marks.forEach([&](std::ptrdiff_t i) {
+        const auto c = row + i;
         const double depth = solid_distance[c];
-        if (depth > 0.0) continue;
         Eigen::Vector3d out;
         for (int a = 0; a < 3; ++a) {
           out[a] = static_cast<double>(solid_distance[c + l.stride[a]]) - solid_distance[c - l.stride[a]];
@@ -156,8 +162,9 @@ void FreeSurface::extendIntoSolids(const std::vector<float>& solid_distance, con
           for (int a = 0; a < 3; ++a) out[a] = static_cast<double>(at_faces[a][c + l.stride[a]]) - at_faces[a][c];
         }
         const double length = out.norm();
-        if (!(length > 0.0)) continue;
-        const Eigen::Vector3d foot = Eigen::Vector3d(i, j, k) + out * ((kSampleBeyondSolid - depth) / length);
+        if (!(length > 0.0)) return;
+        const Eigen::Vector3d foot =
+            Eigen::Vector3d(static_cast<double>(i), j, k) + out * ((kSampleBeyondSolid - depth) / length);
         const Eigen::Vector3d beyond = foot + out * (kSlopeBeyondFoot / length);
         Eigen::Vector3d slope;
         for (int a = 0; a < 3; ++a) {
@@ -165,8 +172,9 @@ void FreeSurface::extendIntoSolids(const std::vector<float>& solid_distance, con
           slope[a] = sampleLinear(l, distance_, beyond + half) - sampleLinear(l, distance_, beyond - half);
         }
         if (slope.norm() > 1.0) slope.normalize();
-        scratch_.field[c] = sampleLinear(l, distance_, foot) + slope.dot(Eigen::Vector3d(i, j, k) - foot);
-      }
+        scratch_.field[c] =
+            sampleLinear(l, distance_, foot) + slope.dot(Eigen::Vector3d(static_cast<double>(i), j, k) - foot);
+      });
     }
   }
   distance_.swap(scratch_.field);

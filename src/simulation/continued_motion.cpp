@@ -8,6 +8,7 @@
 #include "coupling/body_rows.h"
 #include "fluid/advection.h"
 #include "fluid/next_to_known.h"
+#include "solve/marked_entries.h"
 #include "solve/whole_fields.h"
 
 namespace monolith {
@@ -143,23 +144,30 @@ void completeMotion(const SolidFractions& solids, const MacGrid& grid, const std
     forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {
       std::uint8_t* has = known[a].data() + row;
       if (std::memchr(has, 0, width) == nullptr) return;
-      for (int i = 0; i < width; ++i) {
-        if (has[i]) continue;
+      for (const LiquidField& field : fields) {
+        double* values = (*field.values)[a].data() + row;
+#pragma omp simd
+        for (int i = 0; i < width; ++i) values[i] = has[i] != 0 ? values[i] : 0.0;
+      }
+      thread_local RowMarks marks;
+      std::uint8_t* in_solid = marks.start(width);
+      const float* distance = solids.distance[a].data() + row;
+#pragma omp simd
+      for (int i = 0; i < width; ++i) in_solid[i] = (has[i] == 0) & (distance[i] <= 0.0F);
+      marks.forEach([&](std::ptrdiff_t i) {
         const auto f = row + i;
-        for (const LiquidField& field : fields) (*field.values)[a][f] = 0.0;
-        if (solids.distance[a][f] > 0.0) continue;
         const int owner = solids.owner[a][f];
         const bool wall_face = owner < 0;
         if (wall_face) {
           has[i] = 1;
         } else if (no_slip) {
-          const Eigen::Vector3d x = grid.faceCenter(a, i, j, k);
+          const Eigen::Vector3d x = grid.faceCenter(a, static_cast<int>(i), j, k);
           const RigidBody& body = bodies[owner];
           const Vector6d point = velocityRow(a, x + toImageAt(body, grid, x), body.p_WBcm);
           for (const LiquidField& field : fields) (*field.values)[a][f] = point.dot((*field.of_bodies)[owner]);
           has[i] = 1;
         }
-      }
+      });
     });
   }
   for (int layer = 0; layer < kLayers; ++layer) continueIntoAir(l, solids, fields, work, known);

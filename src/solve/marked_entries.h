@@ -17,17 +17,14 @@ class RowMarks {
     return marks_.data();
   }
 
-  // f(index) for those that are set, in order.
+  // f(index) for those that are set, in order: each is one bit of a word, the lowest comes first.
   template <class Function>
   void forEach(Function&& f) const {
     const auto count = static_cast<std::ptrdiff_t>(marks_.size());
     for (std::ptrdiff_t first = 0; first < count; first += kAtOnce) {
       std::uint64_t any;
       std::memcpy(&any, marks_.data() + first, kAtOnce);
-      if (any == 0) continue;
-      for (auto i = first; i < first + kAtOnce; ++i) {
-        if (marks_[i]) f(i);
-      }
+      for (; any != 0; any &= any - 1) f(first + __builtin_ctzll(any) / 8);
     }
   }
 
