@@ -58,16 +58,18 @@ void forEachWallDistance(const Lattice& l, const Eigen::Vector3d& offset, Functi
   }
 }
 
-// f(i, j, k, g) for every place of a body's box that the body takes a part of; g: its face on the grid, or -1. Shared
-// among threads by k.
+// f(axis, {i, j, k}, g) for every place of a body's box that the body takes a part of; g: its face on the grid, or -1.
+// Shared among threads by k.
 template <class Function>
-void forEachFace(const Lattice& l, const BodyFractions& box, int axis, Function&& f) {
+void forEachFace(const Lattice& l, const BodyFractions& box, Function&& f) {
 #pragma omp parallel for schedule(static, kPlanesInTurn) if (holdsCellsOnce(l, box))
   for (int k = 0; k < box.count[2]; ++k) {
-    for (int j = 0; j < box.count[1]; ++j) {
-      for (int i = 0; i < box.count[0]; ++i) {
-        if (box.face[axis][box.local(i, j, k)] == 0.0) continue;
-        f(i, j, k, faceIndex(l, {box.low[0] + i, box.low[1] + j, box.low[2] + k}, axis));
+    for (int a = 0; a < 3; ++a) {
+      for (int j = 0; j < box.count[1]; ++j) {
+        for (int i = 0; i < box.count[0]; ++i) {
+          if (box.face[a][box.local(i, j, k)] == 0.0) continue;
+          f(a, std::array<int, 3>{i, j, k}, faceIndex(l, {box.low[0] + i, box.low[1] + j, box.low[2] + k}, a));
+        }
       }
     }
   }
@@ -278,39 +280,37 @@ void SolidSampler::close(SolidFractions& out) const {
   const Lattice& l = grid_.lattice;
   // First what the bodies leave, which is less than nothing where they overlap.
   for (const BodyFractions& f : out.bodies) {
-    for (int a = 0; a < 3; ++a) {
-      forEachFace(l, f, a, [&](int i, int j, int k, std::ptrdiff_t g) {
-        const std::array<int, 3> at = {f.low[0] + i, f.low[1] + j, f.low[2] + k};
-        if (g >= 0 && !isWallFace(l, a, at[a])) out.fluid[a][g] -= f.face[a][f.local(i, j, k)];
-      });
-    }
+    forEachFace(l, f, [&](int a, const std::array<int, 3>& at, std::ptrdiff_t g) {
+      if (g >= 0 && !isWallFace(l, a, f.low[a] + at[a])) out.fluid[a][g] -= f.face[a][f.local(at[0], at[1], at[2])];
+    });
   }
   for (BodyFractions& f : out.bodies) {
-    f.at_walls.clear();
-    for (int a = 0; a < 3; ++a) {
-      std::vector<std::vector<WallPart>> at_walls(f.count[2]);  // by k
-      forEachFace(l, f, a, [&](int i, int j, int k, std::ptrdiff_t g) {
-        double& fraction = f.face[a][f.local(i, j, k)];
-        const std::array<int, 3> at = {f.low[0] + i, f.low[1] + j, f.low[2] + k};
-        if (g < 0 || isWallFace(l, a, at[a])) {
-          if (g >= 0) {
-            at_walls[k].push_back(
-                {a, g, at[a] == 0 ? g : g - l.stride[a], fraction, grid_.faceCenter(a, at[0], at[1], at[2])});
-          }
-          fraction = 0.0;
-        } else if (out.fluid[a][g] < kLeastFluid) {
-          fraction /= 1.0 - out.fluid[a][g];
+    std::array<std::vector<std::vector<WallPart>>, 3> at_walls;  // by axis and k
+    for (auto& planes : at_walls) planes.resize(f.count[2]);
+    forEachFace(l, f, [&](int a, const std::array<int, 3>& place, std::ptrdiff_t g) {
+      double& fraction = f.face[a][f.local(place[0], place[1], place[2])];
+      const std::array<int, 3> at = {f.low[0] + place[0], f.low[1] + place[1], f.low[2] + place[2]};
+      if (g < 0 || isWallFace(l, a, at[a])) {
+        if (g >= 0) {
+          at_walls[a][place[2]].push_back(
+              {a, g, at[a] == 0 ? g : g - l.stride[a], fraction, grid_.faceCenter(a, at[0], at[1], at[2])});
         }
-      });
-      for (const auto& parts : at_walls) f.at_walls.insert(f.at_walls.end(), parts.begin(), parts.end());
+        fraction = 0.0;
+      } else if (out.fluid[a][g] < kLeastFluid) {
+        fraction /= 1.0 - out.fluid[a][g];
+      }
+    });
+    f.at_walls.clear();
+    for (const auto& planes : at_walls) {
+      for (const auto& parts : planes) f.at_walls.insert(f.at_walls.end(), parts.begin(), parts.end());
     }
   }
+  for (const BodyFractions& f : out.bodies) {
+    forEachFace(l, f, [&](int a, const std::array<int, 3>&, std::ptrdiff_t g) {
+      if (g >= 0 && out.fluid[a][g] < kLeastFluid) out.fluid[a][g] = 0.0;
+    });
+  }
   for (int a = 0; a < 3; ++a) {
-    for (const BodyFractions& f : out.bodies) {
-      forEachFace(l, f, a, [&](int, int, int, std::ptrdiff_t g) {
-        if (g >= 0 && out.fluid[a][g] < kLeastFluid) out.fluid[a][g] = 0.0;
-      });
-    }
     fillHalo(l, out.fluid[a]);
     fillHalo(l, out.distance[a]);
     fillHalo(l, out.owner[a]);
