@@ -7,7 +7,6 @@
 
 #include "coupling/body_rows.h"
 #include "fluid/advection.h"
-#include "fluid/next_to_known.h"
 #include "solve/marked_entries.h"
 #include "solve/whole_fields.h"
 
@@ -105,6 +104,32 @@ double meanOverRows(const std::vector<double>& u, const Rows& rows, double steep
   return sum / rows.count;
 }
 
+// f(face, {i, j, k}): for the faces of axis a in plane k that are not known but may be told by a turn or a row: most
+// others next to known ones, as along the walls in the air, are not. 0 or 1 each, halos filled.
+template <class Function>
+void forEachTold(const Lattice& l, const FaceMask& known, int a, int k, Function&& f) {
+  const int b = (a + 1) % 3, c = (a + 2) % 3;
+  const auto sa = l.stride[a], sb = l.stride[b], sc = l.stride[c], sy = l.stride[1], sz = l.stride[2];
+  const auto begin = l.index(0, 0, k);
+  const auto count = l.index(l.faceEnd(0) - 1, l.faceEnd(1) - 1, k) + 1 - begin;
+  const std::uint8_t *u = known[a].data() + begin, *v = known[b].data() + begin, *w = known[c].data() + begin;
+  const auto highest = k + 2 < l.n[2] + Lattice::kHighHalo ? 2 * sz : sz;
+  thread_local RowMarks marks;
+  std::uint8_t* told = marks.start(count);
+#pragma omp simd
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    const std::uint8_t rows = (u[i - 1] & u[i - 2]) | (u[i + 1] & u[i + 2]) | (u[i - sy] & u[i - 2 * sy]) |
+                              (u[i + sy] & u[i + 2 * sy]) | (u[i - sz] & u[i - 2 * sz]) | (u[i + sz] & u[i + highest]);
+    const std::uint8_t turns = (u[i - sb] & v[i] & v[i - sa]) | (u[i + sb] & v[i + sb] & v[i + sb - sa]) |
+                               (u[i - sc] & w[i] & w[i - sa]) | (u[i + sc] & w[i + sc] & w[i + sc - sa]);
+    told[i] = static_cast<std::uint8_t>((rows | turns) & (u[i] ^ 1));
+  }
+  marks.forEach([&](std::ptrdiff_t i) {
+    const std::array<int, 3> place = {static_cast<int>(i % sy), static_cast<int>(i / sy), k};
+    if (place[0] < l.faceEnd(0)) f(begin + i, place);
+  });
+}
+
 // Faces in air next to known ones: by the vorticity where the faces around an edge tell it, else by the slope of the
 // velocity itself, as that along a surface's normal. Held constant instead, the surface's velocity would be that of up
 // to half a cell below it.
@@ -119,7 +144,7 @@ void continueIntoAir(const Lattice& l, const SolidFractions& solids, const std::
 #pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int plane = 0; plane < 3 * planes; ++plane) {
     const int a = plane / planes;
-    forEachNextToKnown(l, plane % planes, before[a].data(), [&](std::ptrdiff_t f, const std::array<int, 3>& at) {
+    forEachTold(l, before, a, plane % planes, [&](std::ptrdiff_t f, const std::array<int, 3>& at) {
       if (!(solids.distance[a][f] > 0.0F && solids.fluid[a][f] > 0.0)) return;
       const Turns turns = findTurns(l, before, a, f, at);
       const Rows rows = turns.count > 0 ? Rows() : findRows(l, before[a], a, f, at);
