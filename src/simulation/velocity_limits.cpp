@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "solve/marked_entries.h"
 #include "solve/whole_fields.h"
 
 namespace monolith {
@@ -60,12 +61,21 @@ void limitCutFaces(const FaceField<double>& liquid_mass, const SolidFractions& s
   fillHalos(l, velocity, known);
   const auto isCut = [&](int a, std::ptrdiff_t f) { return liquid_mass[a][f] < solids.fluid[a][f]; };
   const auto isWhole = [&](int a, std::ptrdiff_t f) { return known[a][f] != 0 && !isCut(a, f); };
+  const auto markCut = [&](int a, std::ptrdiff_t row, RowMarks& marks) {
+    std::uint8_t* cut = marks.start(l.faceEnd(0));
+    const std::uint8_t* has = known[a].data() + row;
+    const double *mass = liquid_mass[a].data() + row, *fluid = solids.fluid[a].data() + row;
+#pragma omp simd
+    for (int i = 0; i < l.faceEnd(0); ++i) cut[i] = (has[i] != 0) & (mass[i] < fluid[i]);
+  };
   for (int a = 0; a < 3; ++a) {
     std::vector<double>& u = velocity[a];
     // Only whole faces are read, and only cut ones written.
     forEachRow(l, [&](std::ptrdiff_t row, int, int) {
-      for (auto f = row; f < row + l.faceEnd(0); ++f) {
-        if (!known[a][f] || !isCut(a, f)) continue;
+      thread_local RowMarks marks;
+      markCut(a, row, marks);
+      marks.forEach([&](std::ptrdiff_t i) {
+        const auto f = row + i;
         double most = -1.0;
         const auto look = [&](int b, std::ptrdiff_t face) {
           if (isWhole(b, face)) most = std::max(most, std::abs(velocity[b][face]));
@@ -81,13 +91,13 @@ void limitCutFaces(const FaceField<double>& liquid_mass, const SolidFractions& s
             look(b, f + end - l.stride[a]);
           }
         }
-        if (most < 0.0) continue;
+        if (most < 0.0) return;
         const int owner = solids.owner[a][f];
         if (owner >= 0 && solids.distance[a][f] < kNextToBody) most = std::max(most, body_speeds[owner]);
         const double part = liquid_mass[a][f] / solids.fluid[a][f];
         const double limit = std::max(1.0, kOfPart * part) * most + slack;
         u[f] = std::clamp(u[f], -limit, limit);
-      }
+      });
     });
   }
 }
