@@ -18,6 +18,7 @@ void octantFractions(const SignedDistance& solid, const Eigen::Vector3d& center,
   for (int o = 0; o < 8; ++o) {
     corner[o] = R_WB.transpose() * Eigen::Vector3d((o & 1) ? 1 : -1, (o & 2) ? 1 : -1, (o & 4) ? 1 : -1);
   }
+  CutCubes cubes;
   for (int o = 0; o < 8; ++o) {
     const Eigen::Vector3d octant = center + 0.25 * width * corner[o];
     const double distance = solid.distance(octant);
@@ -25,7 +26,6 @@ void octantFractions(const SignedDistance& solid, const Eigen::Vector3d& center,
       out[o] = distance < 0.0 ? 1.0 : 0.0;
       continue;
     }
-    CutCubes cubes;
     std::array<bool, 8> cut, inside;
     for (int q = 0; q < 8; ++q) {
       const DistanceSample s = solid.sample(octant + 0.125 * width * corner[q]);

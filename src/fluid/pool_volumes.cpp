@@ -112,10 +112,10 @@ Eigen::VectorXd FreeSurface::shiftedVolumes(const Eigen::VectorXd& shifts, CutCe
     CutPlane& plane = cut[k];
     plane.sum = plane.full;
     const std::size_t count = plane.cells.size();
+    CutCubes cubes;
     for (std::size_t first = 0; first < count; first += CutCubes::kCount) {
       const CutCell* cells = plane.cells.data() + first;
       const int at_once = static_cast<int>(std::min<std::size_t>(CutCubes::kCount, count - first));
-      CutCubes cubes;
       for (int i = 0; i < at_once; ++i) cubes.set(i, cells[i].distance + shifts[cells[i].pool], cells[i].slope);
       insideFractions(cubes, 1.0);
       for (int i = 0; i < at_once; ++i) {

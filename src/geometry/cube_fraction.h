@@ -11,7 +11,7 @@ namespace monolith {
 // 0: all outside, 1: all inside. `gradient` need not be of unit length; `distance` and `width` in m.
 double insideFraction(double distance, const Eigen::Vector3d& gradient, double width);
 
-// The same of eight cubes at once; one that is not set has no plane in it.
+// The same of eight cubes at once; of those that are not set nothing is told.
 struct CutCubes {
   static constexpr int kCount = 8;
 
