@@ -140,7 +140,12 @@ void FreeSurface::advect(const FaceField<double>& velocity, double dt, double ma
 void FreeSurface::extendIntoSolids(const std::vector<float>& solid_distance, const FaceField<float>& at_faces) {
   if (full_ || empty_) return;
   const Lattice& l = grid_.lattice;
-  copyField(distance_, scratch_.field);
+  // By plane; written when all have been read.
+  struct Continued {
+    std::ptrdiff_t cell;
+    double distance;
+  };
+  std::vector<std::vector<Continued>> continued(l.n[2]);
 #pragma omp parallel for schedule(static, kPlanesInTurn)
   for (int k = 0; k < l.n[2]; ++k) {
     thread_local RowMarks marks;
@@ -172,12 +177,14 @@ void FreeSurface::extendIntoSolids(const std::vector<float>& solid_distance, con
           slope[a] = sampleLinear(l, distance_, beyond + half) - sampleLinear(l, distance_, beyond - half);
         }
         if (slope.norm() > 1.0) slope.normalize();
-        scratch_.field[c] =
-            sampleLinear(l, distance_, foot) + slope.dot(Eigen::Vector3d(static_cast<double>(i), j, k) - foot);
+        continued[k].push_back(
+            {c, sampleLinear(l, distance_, foot) + slope.dot(Eigen::Vector3d(static_cast<double>(i), j, k) - foot)});
       });
     }
   }
-  distance_.swap(scratch_.field);
+  for (const auto& plane : continued) {
+    for (const Continued& at : plane) distance_[at.cell] = at.distance;
+  }
   extendIntoHalo(l, distance_);
 }
 
