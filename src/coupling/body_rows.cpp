@@ -80,4 +80,46 @@ void buildDivergenceRows(const MacGrid& grid, const SolidFractions& solids, cons
   appendRows(parts, out);
 }
 
+namespace {
+
+// Of a body: the projection on the turns that displace nothing, and the point in W that they leave in place.
+struct IdleTurns {
+  Eigen::Matrix3d projection = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d from_centre_of_mass = Eigen::Vector3d::Zero();
+  bool any = false;
+};
+
+IdleTurns idleTurns(const RigidBody& body) {
+  IdleTurns out;
+  if (body.shapes.size() != 1) return out;
+  const Shape& shape = body.shapes[0];
+  const Eigen::Isometry3d X_WG = body.pose() * shape.X_BG;
+  out.from_centre_of_mass = X_WG.translation() - body.p_WBcm;
+  if (shape.kind == Shape::Kind::kSphere) {
+    out.projection.setIdentity();
+  } else if (shape.kind == Shape::Kind::kCylinder) {
+    const Eigen::Vector3d axis = X_WG.linear().col(2);
+    out.projection = axis * axis.transpose();
+  } else {
+    return out;
+  }
+  out.any = true;
+  return out;
+}
+
+}  // namespace
+
+void dropIdleTurns(const std::vector<RigidBody>& bodies, std::vector<BodyRow>& rows) {
+  std::vector<IdleTurns> idle;
+  for (const RigidBody& body : bodies) idle.push_back(idleTurns(body));
+#pragma omp parallel for schedule(static)
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const IdleTurns& turns = idle[rows[i].body];
+    if (!turns.any) continue;
+    Vector6d& row = rows[i].coefficient;
+    const Eigen::Vector3d about_centre = row.tail<3>() - turns.from_centre_of_mass.cross(row.head<3>());
+    row.tail<3>() -= turns.projection * about_centre;
+  }
+}
+
 }  // namespace monolith

@@ -46,6 +46,7 @@ void StepProblem::assemble(SolidFractions& solids, const std::vector<RigidBody>&
     assembleFractions(solids, liquid_distance, rates);
   }
   enclosed = moveEnclosedRows(grid, solids, all_bodies, coefficients, liquid_distance, rows);
+  if (!sticks) dropIdleTurns(all_bodies, rows.divergence);
   op_.set(&coefficients, &rows);
 
   std::vector<char> moves(all_bodies.size(), 0);
@@ -85,7 +86,7 @@ void StepProblem::forget() {
 }
 
 void StepProblem::assembleFitted(SolidFractions& solids, const std::vector<double>& liquid_distance, bool rates) {
-  const bool sticks = viscous_number > 0.0 && viscous_number * impulse_scale >= sticking_viscosity * dt * grid.h;
+  sticks = viscous_number > 0.0 && viscous_number * impulse_scale >= sticking_viscosity * dt * grid.h;
   stuck_inertia = sticks ? attachStickingLiquid(grid, *bodies, liquid_distance, solids)
                          : closeThinWalls(grid, *bodies, liquid_distance, solids);
   const StokesGeometry geometry{&solids.fluid, &solids.distance, &liquid_distance, &solids.cell_distance};
@@ -106,6 +107,7 @@ void StepProblem::assembleFitted(SolidFractions& solids, const std::vector<doubl
 
 void StepProblem::assembleFractions(const SolidFractions& solids, const std::vector<double>& liquid_distance,
                                     bool rates) {
+  sticks = viscous_number > 0.0;
   steady.forget();
   const FractionGeometry geometry = sampleFractions(grid, *bodies, solids, liquid_distance, viscous_number > 0.0);
   buildFractionCoefficients(grid.lattice, geometry, viscous_number, coefficients, rates ? &strain : nullptr);

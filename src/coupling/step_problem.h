@@ -77,6 +77,7 @@ class StepProblem {
   MacGrid grid;
   Discretisation discretisation;
   double sticking_viscosity = 0.0;  // Pa.s, stickingViscosity(), of `fitted`
+  bool sticks = false;  // of the last assembly: next to solids the liquid moves as they do; less viscous it slips
   StaggeredCoefficients<double> coefficients;
   BodyRows rows;
   FaceField<double> flux_share;  // U = flux_share u, 0 without an unknown; empty: U = u
