@@ -19,6 +19,8 @@ constexpr int kLayers = 3;  // the cubic that reads velocities next to the surfa
 // from step to step. Less so where the slope is that of other components: it may be as many times steeper, which a wave
 // of 12 cells length and a quarter of a cell height needs.
 constexpr double kSteeperTurn = 6.0;
+// Cells: of thinner walls the cubic reads from both sides faces in which means would mix what moves on the two.
+constexpr double kMixingWall = 3.0;
 
 // Where the vorticity about the edge between a face in air and a known one tells the velocity in the air. An edge's
 // faces along b are `at_edge` and the one before it along the face's own axis.
@@ -162,7 +164,8 @@ void continueIntoAir(const Lattice& l, const SolidFractions& solids, const std::
 }  // namespace
 
 void completeMotion(const SolidFractions& solids, const MacGrid& grid, const std::vector<RigidBody>& bodies, int layers,
-                    bool no_slip, const std::vector<LiquidField>& fields, FaceMask& known, FaceMask& work) {
+                    bool sticks, bool no_slip, const std::vector<LiquidField>& fields, FaceMask& known,
+                    FaceMask& work) {
   const Lattice& l = grid.lattice;
   const int width = l.faceEnd(0);
   for (int a = 0; a < 3; ++a) {
@@ -185,7 +188,7 @@ void completeMotion(const SolidFractions& solids, const MacGrid& grid, const std
         const bool wall_face = owner < 0;
         if (wall_face) {
           has[i] = 1;
-        } else if (no_slip) {
+        } else if (sticks || bodies[owner].thinnest < kMixingWall * grid.h) {
           const Eigen::Vector3d x = grid.faceCenter(a, static_cast<int>(i), j, k);
           const RigidBody& body = bodies[owner];
           const Vector6d point = velocityRow(a, x + toImageAt(body, grid, x), body.p_WBcm);

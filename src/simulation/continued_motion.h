@@ -8,6 +8,13 @@
 // that is exact to second order, and faces that become liquid begin with the velocity that the flow there has; a
 // velocity that goes on by its own slope alone is too small over crests, too large in troughs, and waves shrink or grow
 // by it, within tens of periods by times three (`./tank validate ripples`).
+//
+// In a body it is the body's motion where liquid sticks to it. Where it slips (coupling/sticking_liquid.h), however
+// little viscous, it is the mean of the faces around, layer by layer inwards: what a trajectory next to a body ends at
+// is interpolated from faces in the body, too, and with the body's motion there the liquid beside it would be dragged
+// along at every step while nothing held the body back. Momentum would come of nothing, and a light ball that bobs
+// would go off to the side. Walls less than three cells thick keep the body's motion all the same: they have to keep
+// what moves on their two sides apart.
 
 #include <vector>
 
@@ -25,9 +32,10 @@ struct LiquidField {
   double steepest;  // of the slope with which it goes on into the air, per cell
 };
 
-// Gives faces inside bodies the bodies' motion where the liquid sticks to them, and spreads what is known into solids
-// and air, marking it known. work: a mask that may be written to.
+// Gives faces inside bodies the bodies' motion if the liquid `sticks` to them, and spreads what is known into solids
+// and air, marking it known. no_slip: beyond the tank's walls, as extrapolateVelocity(). work: a mask that may be
+// written to.
 void completeMotion(const SolidFractions& solids, const MacGrid& grid, const std::vector<RigidBody>& bodies, int layers,
-                    bool no_slip, const std::vector<LiquidField>& fields, FaceMask& known, FaceMask& work);
+                    bool sticks, bool no_slip, const std::vector<LiquidField>& fields, FaceMask& known, FaceMask& work);
 
 }  // namespace monolith

@@ -216,7 +216,8 @@ void Simulation::Impl::moveLiquid(const StepWeights& w, StepReport& step) {
   const double reach = std::ceil(std::max(step.maximum_speed, bodySpeed()) * w.dt / grid.h);
   const int layers = static_cast<int>(std::min(reach, static_cast<double>(most))) + 3;
   const auto complete = [&](const std::vector<LiquidField>& fields, FaceMask& known) {
-    completeMotion(solids, grid, plan.bodies, layers, noSlip(), fields, known, scratch.known_before);
+    completeMotion(solids, grid, plan.bodies, layers, system.problem().sticks, noSlip(), fields, known,
+                   scratch.known_before);
   };
   const double gravity = scene.gravity.norm();
   const LiquidField velocity{&state.coupled.velocity, &state.coupled.twists,

@@ -62,7 +62,7 @@ double errorAbove(const std::function<Vector3d(const Vector3d&)>& flow, double t
   }
   const LiquidField field{&velocity, nullptr, kAnySlope};
   FaceMask work;
-  completeMotion(solids, g, {}, kReach + 1, false, {field}, known, work);
+  completeMotion(solids, g, {}, kReach + 1, false, false, {field}, known, work);
   double error = 0.0, largest = 0.0;
   int looked_at = 0;
   forEachRow(l, [&](std::ptrdiff_t row, int j, int k) {

@@ -28,6 +28,27 @@ Scene pool(const Vector3d& cells) {
   return scene;
 }
 
+// Five cells across. In a tank that is periodic sideways nothing pushes it to any side.
+TEST(Floating, ABallThatBobsStaysAtItsPlace) {
+  constexpr double kRadius = 0.05;
+  constexpr double kOffset = 0.4;  // cells, from a place at which the grid is symmetric
+  Scene scene = pool({20, 20, 20});
+  scene.tank.periodic[0] = scene.tank.periodic[1] = true;
+  const Vector3d start(0.2 + kOffset * kCell, 0.2 + kOffset * kCell, kLevel + 0.03);
+  scene.bodies = {sphereBody("ball", kRadius, 200.0, start)};
+  Simulation simulation(scene);
+  double farthest = 0.0, fastest = 0.0;
+  while (simulation.time() < 4.0) {
+    const StepReport report = simulation.step();
+    ASSERT_TRUE(report.committed()) << report.message;
+    const BodyState ball = simulation.bodyStates()[0];
+    farthest = std::max(farthest, (ball.X_WB.translation() - start).head<2>().norm());
+    fastest = std::max(fastest, ball.angular_velocity.norm());
+  }
+  EXPECT_LT(farthest, 0.4 * kCell);
+  EXPECT_LT(fastest, 0.25);
+}
+
 TEST(Floating, AWaveThatPassesABallDoesNotSpinIt) {
   Scene scene = pool({40, 20, 24});
   scene.time_step = 0.01;
