@@ -1,12 +1,16 @@
 #include "node/wrench_commands.h"
 
+#include <algorithm>
+
 #include "node/request_error.h"
 #include "scene/shown_vector.h"
 
 namespace monolith {
 namespace {
 
-constexpr double kTimeSlack = 1e-6;  // s, round-off of a sum of steps
+constexpr double kRoundOff = 1e-6;       // of a step, of its beginning
+constexpr double kStampRoundOff = 2e-9;  // s: ROS holds two times, whose difference a request is, in whole nanoseconds
+constexpr double kMostSlack = 0.25;      // of a step, where it is hardly longer than that
 
 bool isFinite(const Wrench& wrench) { return wrench.force.allFinite() && wrench.torque.allFinite(); }
 
@@ -24,6 +28,11 @@ void add(const Wrench& wrench, Wrench& sum) {
 }
 
 }  // namespace
+
+WrenchCommands::WrenchCommands(int bodies, double time_step)
+    : slack_(std::min(std::max(kRoundOff * time_step, kStampRoundOff), kMostSlack * time_step)),
+      held_(bodies),
+      applied_(bodies) {}
 
 Wrench aboutCentreOfMass(const WrenchCommand& command, const Eigen::Isometry3d& X_WF, const Eigen::Vector3d& p_WBcm) {
   Wrench wrench;
@@ -74,13 +83,13 @@ void WrenchCommands::commit() {
 }
 
 void WrenchCommands::evaluate(std::vector<Entry>& entries, double time, const RigidBody& body,
-                              const FramePose& frame_pose, Wrench& sum, std::vector<std::string>& lost) {
+                              const FramePose& frame_pose, Wrench& sum, std::vector<std::string>& lost) const {
   std::vector<Entry> kept;
   for (Entry& entry : entries) {
     entry.acts = false;
-    const bool over = entry.has_acted && time > entry.command.end - kTimeSlack;
+    const bool over = entry.has_acted && time > entry.command.end - slack_;
     if (over) continue;
-    if (time >= entry.command.start - kTimeSlack) {
+    if (time >= entry.command.start - slack_) {
       try {
         add(aboutCentreOfMass(entry.command, frame_pose(entry.command.frame), body.p_WBcm), sum);
         entry.acts = true;

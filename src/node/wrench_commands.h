@@ -31,7 +31,8 @@ class WrenchCommands {
   // X_WF of a frame; throws RequestError.
   using FramePose = std::function<Eigen::Isometry3d(const std::string& frame)>;
 
-  explicit WrenchCommands(int bodies) : held_(bodies), applied_(bodies) {}
+  // time_step: s, of the steps that commands begin and end with.
+  WrenchCommands(int bodies, double time_step);
 
   enum class Kind { kHeld, kApplied };
   // RequestError if the command would be given up when it begins, in frames as they are now: alone, or with what acts
@@ -59,9 +60,10 @@ class WrenchCommands {
     bool acts = false;  // in the step that was evaluated last
     bool has_acted = false;
   };
-  static void evaluate(std::vector<Entry>& entries, double time, const RigidBody& body, const FramePose& frame_pose,
-                       Wrench& sum, std::vector<std::string>& lost);
+  void evaluate(std::vector<Entry>& entries, double time, const RigidBody& body, const FramePose& frame_pose,
+                Wrench& sum, std::vector<std::string>& lost) const;
 
+  double slack_;  // s: by so much a command's times may miss the beginning of a step that they mean
   std::vector<std::vector<Entry>> held_;  // at most one each
   std::vector<std::vector<Entry>> applied_;
 };

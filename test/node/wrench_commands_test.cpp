@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <tf2/buffer_core.h>
 
+#include <cmath>
+
 #include "node/message_conversion.h"
 #include "node/reference_frames.h"
 #include "node/request_error.h"
@@ -15,6 +17,8 @@ namespace {
 using Eigen::AngleAxisd;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
+
+constexpr double kStep = 0.1;  // s
 
 Isometry3d somePose() {
   Isometry3d X(AngleAxisd(0.7, Vector3d(1.0, 2.0, -1.0).normalized()));
@@ -40,14 +44,14 @@ WrenchCommand push(double start, double end, const Vector3d& force = Vector3d::U
   return command;
 }
 
-// Steps of 0.1 s in which body 0 is pushed along x, as the sum of the forces.
-std::vector<double> pushes(WrenchCommands& commands, int steps) {
+// Steps in which body 0 is pushed along x, as the sum of the forces.
+std::vector<double> pushes(WrenchCommands& commands, int steps, double time_step = kStep) {
   const std::vector<RigidBody> bodies = {bodyAt(Isometry3d::Identity(), Vector3d::Zero())};
   std::vector<double> out;
   std::vector<std::string> lost;
   for (int i = 0; i < steps; ++i) {
     const auto identity = [](const std::string&) { return Isometry3d::Identity(); };
-    out.push_back(commands.evaluate(0.1 * i, bodies, identity, lost)[0].force.x());
+    out.push_back(commands.evaluate(time_step * i, bodies, identity, lost)[0].force.x());
     commands.commit();
   }
   EXPECT_TRUE(lost.empty());
@@ -73,7 +77,7 @@ TEST(AboutCentreOfMass, KeepsThePowerInEveryRigidMotion) {
 }
 
 TEST(WrenchCommands, HeldOneActsUntilItsEndAndIsReplaced) {
-  WrenchCommands commands(1);
+  WrenchCommands commands(1, kStep);
   commands.hold(0, push(0.0, 0.3));
   EXPECT_EQ(pushes(commands, 5), (std::vector<double>{1, 1, 1, 0, 0}));
   commands.hold(0, push(0.0, 0.3));
@@ -82,7 +86,7 @@ TEST(WrenchCommands, HeldOneActsUntilItsEndAndIsReplaced) {
 }
 
 TEST(WrenchCommands, AppliedOnesAddUpAndWaitForTheirStart) {
-  WrenchCommands commands(1);
+  WrenchCommands commands(1, kStep);
   commands.hold(0, push(0.0, 0.2));
   commands.apply(0, push(0.1, 0.3, 10.0 * Vector3d::UnitX()));
   commands.apply(0, push(0.2, 0.4, 100.0 * Vector3d::UnitX()));
@@ -90,13 +94,23 @@ TEST(WrenchCommands, AppliedOnesAddUpAndWaitForTheirStart) {
 }
 
 TEST(WrenchCommands, ShorterThanAStepActsInOne) {
-  WrenchCommands commands(1);
+  WrenchCommands commands(1, kStep);
   commands.apply(0, push(0.13, 0.14));
   EXPECT_EQ(pushes(commands, 4), (std::vector<double>{0, 0, 1, 0}));
 }
 
+// Whose times ROS has rounded to nanoseconds.
+TEST(WrenchCommands, OfShortStepsBeginAndEndWithTheStepsTheyMean) {
+  for (const double step : {0.02, 1.0 / 3000.0, 1e-5, 1e-6, 1e-6 / 3.0, 1e-7, 1e-8}) {
+    const auto inNanoseconds = [](double time) { return 1e-9 * std::round(1e9 * time); };
+    WrenchCommands commands(1, step);
+    commands.apply(0, push(inNanoseconds(2.0 * step), inNanoseconds(2.0 * step) + inNanoseconds(3.0 * step)));
+    EXPECT_EQ(pushes(commands, 7, step), (std::vector<double>{0, 0, 1, 1, 1, 0, 0})) << step;
+  }
+}
+
 TEST(WrenchCommands, EndlessOneActsUntilCleared) {
-  WrenchCommands commands(1);
+  WrenchCommands commands(1, kStep);
   commands.apply(0, push(0.0, std::numeric_limits<double>::infinity()));
   EXPECT_EQ(pushes(commands, 3), (std::vector<double>{1, 1, 1}));
   commands.clear(0);
@@ -104,7 +118,7 @@ TEST(WrenchCommands, EndlessOneActsUntilCleared) {
 }
 
 TEST(WrenchCommands, LostFrameEndsOnlyItsOwnCommand) {
-  WrenchCommands commands(1);
+  WrenchCommands commands(1, kStep);
   WrenchCommand lost_one = push(0.0, 1.0, 10.0 * Vector3d::UnitX());
   lost_one.frame = "gone";
   commands.hold(0, push(0.0, 1.0));
@@ -124,7 +138,7 @@ TEST(WrenchCommands, LostFrameEndsOnlyItsOwnCommand) {
 }
 
 TEST(WrenchCommands, OfAStepThatWasNotCommittedActInTheNext) {
-  WrenchCommands commands(1);
+  WrenchCommands commands(1, kStep);
   commands.hold(0, push(0.0, 0.01));
   commands.apply(0, push(0.0, 0.01, 10.0 * Vector3d::UnitX()));
   const std::vector<RigidBody> bodies = {bodyAt(Isometry3d::Identity(), Vector3d::Zero())};
@@ -140,7 +154,7 @@ TEST(WrenchCommands, OfAStepThatWasNotCommittedActInTheNext) {
 }
 
 TEST(WrenchCommands, TooLargeForANumberIsGivenUpByNameAndTheOthersAct) {
-  WrenchCommands commands(2);
+  WrenchCommands commands(2, kStep);
   WrenchCommand far = push(0.0, 1.0, 1e200 * Vector3d::UnitX());
   far.point = 1e200 * Vector3d::UnitY();
   commands.apply(0, far);
