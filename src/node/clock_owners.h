@@ -6,7 +6,8 @@
 
 namespace monolith {
 
-// Names of the other nodes that publish /clock, as the master knows them; one that was killed may still be among them.
+// Names of the other nodes that publish /clock, as the master knows them; without those that do not answer within a
+// second: a node that was killed stays with the master.
 std::vector<std::string> otherClockOwners();
 
 }  // namespace monolith

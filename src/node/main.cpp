@@ -4,6 +4,7 @@
 #include <ros/ros.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -38,6 +39,9 @@ int main(int argc, char** argv) {
   waitBriefly(argv);
   ros::init(argc, argv, "monolith_tank_node");
   ros::NodeHandle global;
+  // roscpp, which has started with that, ends on SIGINT alone. What containers and services are ended with would leave
+  // the node's topics and services with the master.
+  std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
   ros::NodeHandle local("~");
   std::unique_ptr<monolith::TankNode> node;
   try {

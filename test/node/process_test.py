@@ -13,6 +13,7 @@ import time
 import unittest
 
 import rosbag
+import rosgraph
 import roslaunch.config
 import roslib.packages
 import rospkg
@@ -44,10 +45,10 @@ class ProcessTest(unittest.TestCase):
     def setUpClass(cls):
         rospy.init_node('process_test')
 
-    def finish(self, *arguments, timeout_sec=60):
-        """Runs the node under a name, and so with parameters, of its own. Returns exit code and output."""
+    def finish(self, *arguments, timeout_sec=60, name=None):
+        """Runs the node, under a name, and so with parameters, of its own unless told. Returns exit code and output."""
         ProcessTest.runs += 1
-        process = start(*arguments, name='run_%d' % ProcessTest.runs)
+        process = start(*arguments, name=name or 'run_%d' % ProcessTest.runs)
         try:
             output, _ = process.communicate(timeout=timeout_sec)
         finally:
@@ -238,6 +239,19 @@ class ProcessTest(unittest.TestCase):
         code, output = self.finish('_scene:=' + SMALL, '_duration:=0.02', '_paced:=false')
         self.assertNotIn(rospy.get_name() + ' publishes', output)
 
+    def testAClockThatWasKilledIsNone(self):
+        process = start('_scene:=' + SMALL, '_start_paused:=true', '_duration:=0')
+        try:
+            Tank()
+        finally:
+            process.kill()
+        process.communicate()
+        self.addCleanup(self.finish, '_scene:=' + SMALL, '_start_paused:=false', '_duration:=0.02', '_paced:=false',
+                        name='monolith_tank')
+        code, output = self.finish('_scene:=' + SMALL, '_duration:=0.02', '_paced:=false')
+        self.assertEqual(code, 0, output)
+        self.assertNotIn(NODE + ' publishes', output)
+
     def testPacedRunKeepsToRealTime(self):
         begin = time.time()
         code, output = self.finish('_scene:=' + SMALL, '_duration:=2.0', '_progress:=true')
@@ -279,15 +293,22 @@ class ProcessTest(unittest.TestCase):
         self.assertEqual(process.returncode, 0, output)
         self.assertAlmostEqual(clock.messages[-1].clock.to_sec(), 0.22)
 
-    def testInterruptEndsCleanly(self):
-        process = start('_scene:=' + SMALL, '_duration:=0')
-        try:
-            Collector(NODE + '/statistics', Statistics).waitFor(2)
-            process.send_signal(signal.SIGINT)
-            output, _ = process.communicate(timeout=10)
-        finally:
-            process.kill()
-        self.assertEqual(process.returncode, 0, output)
+    def testInterruptAndTerminationEndCleanly(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            statistics = Collector(NODE + '/statistics', Statistics)
+            process = start('_scene:=' + SMALL, '_start_paused:=false', '_duration:=0')
+            try:
+                statistics.waitFor(2)
+                process.send_signal(number)
+                output, _ = process.communicate(timeout=10)
+            finally:
+                process.kill()
+            statistics.subscriber.unregister()
+            self.assertEqual(process.returncode, 0, output)
+            # The master has been told.
+            known = [node for topics in rosgraph.Master('/process_test').getSystemState() for _, nodes in topics
+                     for node in nodes]
+            self.assertNotIn(NODE, known)
 
     def testStepThatFailsPausesAndKeepsTheState(self):
         def unsolvable(scene):
