@@ -108,7 +108,8 @@ NodeOptions readAll(ParameterReader& reader) {
   reader.read("surface_rate", options.surface_rate, false);
   reader.read("statistics_rate", options.statistics_rate, false);
   reader.read("marker_rate", options.marker_rate, false);
-  reader.read("world_frame", options.world_frame);
+  reader.read("world_frame", options.frames.world);
+  reader.read("frame_prefix", options.frames.prefix);
   reader.read("wrench_timeout", options.wrench_timeout, false);
   reader.read("wait_for_subscribers", options.wait_for_subscribers);
   reader.read("progress", options.progress);
@@ -116,8 +117,10 @@ NodeOptions readAll(ParameterReader& reader) {
   double diagnostic_period = 1.0;
   reader.read("diagnostic_period", diagnostic_period, false);
   reader.require(!options.scene.empty(), "scene", "the path of a scene file or the name of a shipped scene");
-  reader.require(!options.world_frame.empty() && options.world_frame[0] != '/', "world_frame",
+  reader.require(!options.frames.world.empty() && options.frames.world[0] != '/', "world_frame",
                  "a tf frame without a leading slash");
+  reader.require(options.frames.prefix.empty() || options.frames.prefix[0] != '/', "frame_prefix",
+                 "the beginning of tf frames, without a leading slash");
   reader.require(options.duration <= kLongestDurationSec, "duration", "at most 4e9 s, ROS cannot hold later times");
   return options;
 }

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "node/frame_names.h"
+
 namespace monolith {
 
 struct NodeOptions {
@@ -17,7 +19,7 @@ struct NodeOptions {
   double surface_rate = 10.0;
   double statistics_rate = 10.0;
   double marker_rate = 25.0;
-  std::string world_frame = "world";
+  FrameNames frames;
   double wrench_timeout = 0.5;  // s, simulated
   bool wait_for_subscribers = false;
   bool progress = false;

@@ -15,23 +15,30 @@ constexpr int kMostAncestors = 1000;  // a loop in tf would never end
 
 }  // namespace
 
-ReferenceFrames::ReferenceFrames(const Scene& scene, const std::string& world_frame, const tf2::BufferCore& transforms)
-    : world_frame_(world_frame), transforms_(transforms) {
-  own_[world_frame] = {-1, Eigen::Isometry3d::Identity()};
-  own_[tankFrame(world_frame)] = {-1, Eigen::Isometry3d(Eigen::Translation3d(scene.tank.origin))};
+ReferenceFrames::ReferenceFrames(const Scene& scene, const FrameNames& names, const tf2::BufferCore& transforms)
+    : names_(names), transforms_(transforms) {
+  own_[names.world] = {-1, Eigen::Isometry3d::Identity()};
+  own_[names.tank()] = {-1, Eigen::Isometry3d(Eigen::Translation3d(scene.tank.origin))};
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const BodyDescription& body = scene.bodies[b];
     const auto add = [&](const std::string& frame, const std::string& of, const Eigen::Isometry3d& X_BF) {
       if (own_.emplace(frame, OwnFrame{static_cast<int>(b), X_BF}).second) return;
       throw SceneError(scene.source + ": body \"" + body.name + "\": " + of + " has the tf frame \"" + frame +
-                       "\": expected one of its own, ~world_frame is \"" + world_frame + "\" and the tank's \"" +
-                       tankFrame(world_frame) + "\"");
+                       "\": expected one of its own, ~world_frame is \"" + names.world + "\" and the tank's \"" +
+                       names.tank() + "\"");
     };
-    add(body.name, "the body", Eigen::Isometry3d::Identity());
+    add(names.body(body.name), "the body", Eigen::Isometry3d::Identity());
     for (const LinkFrame& link : body.links) {
-      add(linkFrame(body.name, link.name), "link \"" + link.name + "\"", link.X_BL);
+      add(names.link(body.name, link.name), "link \"" + link.name + "\"", link.X_BL);
     }
   }
+}
+
+std::set<std::string> ReferenceFrames::movedFrames() const {
+  std::set<std::string> frames;
+  for (const auto& entry : own_) frames.insert(entry.first);
+  frames.erase(names_.world);
+  return frames;
 }
 
 Eigen::Isometry3d ReferenceFrames::poseOf(const OwnFrame& frame, const std::vector<RigidBody>& bodies) const {
@@ -54,7 +61,7 @@ Eigen::Isometry3d ReferenceFrames::pose(const std::string& frame, const std::vec
   if (own != own_.end()) return poseOf(own->second, bodies);
   // A frame above the world, such as "map", has no ancestor of ours; tf knows it relative to the world all the same.
   const std::string ancestor = ownAncestor(frame);
-  const std::string& target = ancestor.empty() ? world_frame_ : ancestor;
+  const std::string& target = ancestor.empty() ? names_.world : ancestor;
   try {
     const auto transform = transforms_.lookupTransform(target, frame, ros::Time(0));
     return poseOf(own_.at(target), bodies) * fromTransform(transform.transform);
@@ -71,7 +78,7 @@ void ReferenceFrames::throwUnknown(const std::string& frame) const {
   std::sort(others.begin(), others.end());
   known.insert(known.end(), others.begin(), others.end());
   known.erase(std::remove(known.begin(), known.end(), frame), known.end());
-  throw RequestError("frame \"" + frame + "\": expected a tf frame connected to \"" + world_frame_ +
+  throw RequestError("frame \"" + frame + "\": expected a tf frame connected to \"" + names_.world +
                      "\", the nearest known is \"" + nearestWord(frame, known) + "\"");
 }
 

@@ -12,7 +12,6 @@
 
 #include "node/message_conversion.h"
 #include "node/point_cloud.h"
-#include "node/reference_frames.h"
 #include "node/tank_markers.h"
 
 namespace monolith {
@@ -29,7 +28,7 @@ StatePublisher::StatePublisher(ros::NodeHandle& global, ros::NodeHandle& local, 
                                const Simulation& simulation)
     : local_(local),
       simulation_(simulation),
-      world_frame_(options.world_frame),
+      frames_(options.frames),
       owns_clock_(ros::Time::isSimTime()),
       state_rhythm_{PublishGate(options.state_rate, simulation.scene().time_step)},
       surface_rhythm_{PublishGate(options.surface_rate, simulation.scene().time_step)},
@@ -65,17 +64,17 @@ ros::Time StatePublisher::stamp() const {
 std_msgs::Header StatePublisher::header() const {
   std_msgs::Header header;
   header.stamp = stamp();
-  header.frame_id = world_frame_;
+  header.frame_id = frames_.world;
   return header;
 }
 
 void StatePublisher::publishConstant() {
-  tank_.publish(makeTankMarkers(simulation_.scene().tank, world_frame_));
+  tank_.publish(makeTankMarkers(simulation_.scene().tank, frames_.world));
   tf2_msgs::TFMessage frames;
   // The tank's corner. It also makes the world frame known to tf while nothing moves.
   geometry_msgs::TransformStamped corner;
   corner.header = header();
-  corner.child_frame_id = ReferenceFrames::tankFrame(world_frame_);
+  corner.child_frame_id = frames_.tank();
   corner.transform.translation = toVector(simulation_.scene().tank.origin);
   corner.transform.rotation.w = 1.0;
   frames.transforms.push_back(corner);
@@ -84,8 +83,8 @@ void StatePublisher::publishConstant() {
     for (const LinkFrame& link : body.links) {
       geometry_msgs::TransformStamped transform;
       transform.header.stamp = stamp();
-      transform.header.frame_id = body.name;
-      transform.child_frame_id = ReferenceFrames::linkFrame(body.name, link.name);
+      transform.header.frame_id = frames_.body(body.name);
+      transform.child_frame_id = frames_.link(body.name, link.name);
       transform.transform = toTransform(link.X_BL);
       frames.transforms.push_back(transform);
     }
@@ -133,7 +132,7 @@ void StatePublisher::publishTransforms(const std::vector<BodyState>& states) {
   for (std::size_t b = 0; b < states.size(); ++b) {
     geometry_msgs::TransformStamped transform;
     transform.header = header();
-    transform.child_frame_id = simulation_.scene().bodies[b].name;
+    transform.child_frame_id = frames_.body(simulation_.scene().bodies[b].name);
     transform.transform = toTransform(states[b].X_WB);
     message.transforms.push_back(transform);
   }
@@ -157,7 +156,7 @@ void StatePublisher::publishOdometry(const std::vector<BodyState>& states) {
   for (std::size_t b = 0; b < states.size(); ++b) {
     nav_msgs::Odometry message;
     message.header = header();
-    message.child_frame_id = simulation_.scene().bodies[b].name;
+    message.child_frame_id = frames_.body(simulation_.scene().bodies[b].name);
     message.pose.pose = toPose(states[b].X_WB);
     // nav_msgs/Odometry has its twist in the child frame.
     const Eigen::Matrix3d R_BW = states[b].X_WB.linear().transpose();

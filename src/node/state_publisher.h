@@ -47,7 +47,7 @@ class StatePublisher {
 
   ros::NodeHandle local_;
   const Simulation& simulation_;
-  std::string world_frame_;
+  FrameNames frames_;
   bool owns_clock_;
   // When a topic, or several at once, is published, and the step of which it last was.
   struct Rhythm {

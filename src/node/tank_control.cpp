@@ -5,9 +5,9 @@
 
 namespace monolith {
 
-TankControl::TankControl(const Scene& scene, const std::string& world_frame, const tf2::BufferCore& transforms)
+TankControl::TankControl(const Scene& scene, const FrameNames& names, const tf2::BufferCore& transforms)
     : simulation_(scene),
-      frames_(scene, world_frame, transforms),
+      frames_(scene, names, transforms),
       wrenches_(static_cast<int>(scene.bodies.size()), scene.time_step) {}
 
 int TankControl::findBody(const std::string& name, const std::string& field) const {

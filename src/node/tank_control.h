@@ -16,10 +16,11 @@ namespace monolith {
 class TankControl {
  public:
   // Throws SceneError.
-  TankControl(const Scene& scene, const std::string& world_frame, const tf2::BufferCore& transforms);
+  TankControl(const Scene& scene, const FrameNames& names, const tf2::BufferCore& transforms);
 
   Simulation& simulation() { return simulation_; }
   const Simulation& simulation() const { return simulation_; }
+  const ReferenceFrames& frames() const { return frames_; }
   WrenchCommands& wrenches() { return wrenches_; }
 
   // Index of a body; RequestError with the nearest known name.

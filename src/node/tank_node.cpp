@@ -21,12 +21,13 @@ TankNode::TankNode(ros::NodeHandle& global, ros::NodeHandle& local, ros::Callbac
                    const NodeOptions& options, const Scene& scene)
     : options_(options),
       queue_(queue),
-      control_(scene, options.world_frame, transforms_),
+      control_(scene, options.frames, transforms_),
       publisher_(global, local, options, control_.simulation()),
       diagnostics_(scene.name),
       listener_(transforms_, global, false),
+      foreign_frames_(global, control_.frames().movedFrames()),
       wrench_input_(local, control_, options.wrench_timeout, [this](const std::string& text) { refuse(text); }),
-      body_services_(local, control_, options.world_frame,
+      body_services_(local, control_, options.frames.world,
                      {[this] { return publisher_.stamp(); }, [this](const std::string& text) { refuse(text); },
                       [this] { stateChanged(); }}) {
   servers_.push_back(local.advertiseService("pause_physics", &TankNode::pause, this));

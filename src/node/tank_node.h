@@ -16,6 +16,7 @@
 
 #include "monolith_tank/StepPhysics.h"
 #include "node/body_services.h"
+#include "node/foreign_frames.h"
 #include "node/health_diagnostics.h"
 #include "node/node_options.h"
 #include "node/pacing.h"
@@ -60,6 +61,7 @@ class TankNode {
   StatePublisher publisher_;
   HealthDiagnostics diagnostics_;
   tf2_ros::TransformListener listener_;
+  ForeignFrames foreign_frames_;
   WrenchInput wrench_input_;
   BodyServices body_services_;
   std::vector<ros::ServiceServer> servers_;

@@ -62,12 +62,14 @@ TEST(NodeOptions, ValuesAreRead) {
   parameters["duration"] = 3;  // YAML's whole numbers are numbers too
   parameters["state_rate"] = 12.5;
   parameters["world_frame"] = "tank_world";
+  parameters["frame_prefix"] = "left/";
   const NodeOptions options = readNodeOptions(parameters);
   EXPECT_EQ(options.scene, "drop");
   EXPECT_FALSE(options.paced);
   EXPECT_EQ(options.duration, 3.0);
   EXPECT_EQ(options.state_rate, 12.5);
-  EXPECT_EQ(options.world_frame, "tank_world");
+  EXPECT_EQ(options.frames.world, "tank_world");
+  EXPECT_EQ(options.frames.prefix, "left/");
 }
 
 TEST(NodeOptions, WrongValuesAreNamedWithWhatWasExpected) {
@@ -86,6 +88,7 @@ TEST(NodeOptions, WrongValuesAreNamedWithWhatWasExpected) {
   expectError("scene", "", "a scene file");
   expectError("world_frame", "", "a tf frame");
   expectError("world_frame", "/world", "slash");
+  expectError("frame_prefix", "/left", "slash");
 }
 
 TEST(NodeOptions, SceneIsRequired) {
@@ -129,7 +132,8 @@ TEST(NodeTemplate, NamesEveryParameterWithItsDefault) {
   EXPECT_EQ(given.surface_rate, defaults.surface_rate);
   EXPECT_EQ(given.statistics_rate, defaults.statistics_rate);
   EXPECT_EQ(given.marker_rate, defaults.marker_rate);
-  EXPECT_EQ(given.world_frame, defaults.world_frame);
+  EXPECT_EQ(given.frames.world, defaults.frames.world);
+  EXPECT_EQ(given.frames.prefix, defaults.frames.prefix);
   EXPECT_EQ(given.wrench_timeout, defaults.wrench_timeout);
   EXPECT_EQ(given.progress, defaults.progress);
   std::set<std::string> names;
@@ -138,7 +142,7 @@ TEST(NodeTemplate, NamesEveryParameterWithItsDefault) {
   }
   EXPECT_EQ(names, (std::set<std::string>{"scene", "paced", "start_paused", "duration", "wait_for_subscribers",
                                           "state_rate", "surface_rate", "statistics_rate", "marker_rate", "world_frame",
-                                          "wrench_timeout", "progress", "diagnostic_period"}));
+                                          "frame_prefix", "wrench_timeout", "progress", "diagnostic_period"}));
 }
 
 }  // namespace

@@ -22,7 +22,9 @@ import rostest
 import yaml
 from diagnostic_msgs.msg import DiagnosticArray
 from monolith_tank.msg import Statistics
+from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock, Log
+from tf2_msgs.msg import TFMessage
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from tank_client import NODE, Collector, Tank, waitUntil, wrench
@@ -251,6 +253,33 @@ class ProcessTest(unittest.TestCase):
         code, output = self.finish('_scene:=' + SMALL, '_duration:=0.02', '_paced:=false')
         self.assertEqual(code, 0, output)
         self.assertNotIn(NODE + ' publishes', output)
+
+    def testFramesOfAnotherNodeAreSaidAndAPrefixKeepsThemApart(self):
+        frames, odometry = Collector('/tf', TFMessage), Collector('/run_right/ball/odom', Odometry)
+        static = Collector('/tf_static', TFMessage)
+        process = start('_scene:=' + SMALL, '_start_paused:=true', '_duration:=0')
+        try:
+            Tank()
+            arguments = ['_scene:=' + SMALL, '_duration:=0.4', '_paced:=true']
+            code, output = self.finish(*arguments, name='run_left')
+            self.assertEqual(code, 0, output)
+            for moved in ('"ball", "probe", "post"',
+                          '"world/tank", "ball/core", "probe/cube", "probe/tip", "post/core"'):
+                self.assertEqual(output.count(NODE + ' publishes tf frames of this node too: ' + moved + ';'), 1, output)
+            frames.clear()
+            static.clear()
+            code, output = self.finish(*arguments, '_frame_prefix:=right/', name='run_right')
+            self.assertEqual(code, 0, output)
+            self.assertNotIn('publishes tf frames', output)
+        finally:
+            process.send_signal(signal.SIGINT)
+            process.communicate(timeout=10)
+            process.kill()
+        self.assertEqual({message.child_frame_id for message in odometry.messages}, {'right/ball'})
+        pairs = {(transform.header.frame_id, transform.child_frame_id) for collector in (frames, static)
+                 for message in list(collector.messages) for transform in message.transforms}
+        self.assertTrue({('world', 'right/ball'), ('world', 'right/world/tank'), ('right/ball', 'right/ball/core')}
+                        <= pairs, pairs)
 
     def testPacedRunKeepsToRealTime(self):
         begin = time.time()

@@ -45,7 +45,7 @@ class TankControlTest : public ::testing::Test {
   }
 
   tf2::BufferCore transforms_;
-  TankControl control_{scene(), "world", transforms_};
+  TankControl control_{scene(), {"world", ""}, transforms_};
   std::vector<std::string> lost_;
 };
 

@@ -205,7 +205,7 @@ class ReferenceFramesTest : public ::testing::Test {
 };
 
 TEST_F(ReferenceFramesTest, OwnFramesAreWhereTheBodyIs) {
-  const ReferenceFrames frames(scene_, "world", buffer_);
+  const ReferenceFrames frames(scene_, {"world", ""}, buffer_);
   EXPECT_TRUE(frames.pose("world", bodies_).isApprox(Isometry3d::Identity()));
   EXPECT_TRUE(frames.pose("probe", bodies_).isApprox(somePose()));
   EXPECT_TRUE(frames.pose("probe/base", bodies_).isApprox(somePose()));
@@ -213,7 +213,7 @@ TEST_F(ReferenceFramesTest, OwnFramesAreWhereTheBodyIs) {
 }
 
 TEST_F(ReferenceFramesTest, ForeignFrameFollowsTheBodyThatItHangsOn) {
-  const ReferenceFrames frames(scene_, "world", buffer_);
+  const ReferenceFrames frames(scene_, {"world", ""}, buffer_);
   Isometry3d X_LF(AngleAxisd(0.3, Vector3d::UnitY()));
   X_LF.translation() = Vector3d(0.05, 0.0, 0.0);
   publish("probe/tip", "bracket", X_LF);
@@ -230,7 +230,7 @@ TEST_F(ReferenceFramesTest, ForeignFrameFollowsTheBodyThatItHangsOn) {
 }
 
 TEST_F(ReferenceFramesTest, FramesOfTheWorldsParentAreKnown) {
-  const ReferenceFrames frames(scene_, "world", buffer_);
+  const ReferenceFrames frames(scene_, {"world", ""}, buffer_);
   publish("map", "world", somePose());
   EXPECT_TRUE(frames.pose("map", bodies_).isApprox(somePose().inverse()));
   publish("map", "dock", somePose());
@@ -238,7 +238,7 @@ TEST_F(ReferenceFramesTest, FramesOfTheWorldsParentAreKnown) {
 }
 
 TEST_F(ReferenceFramesTest, UnknownAndUnconnectedFramesAreNamedWithTheNearest) {
-  const ReferenceFrames frames(scene_, "world", buffer_);
+  const ReferenceFrames frames(scene_, {"world", ""}, buffer_);
   publish("island", "palm", Isometry3d::Identity());
   for (const std::string frame : {"prob", "palm", "island", "/probe", "", "probe/tp"}) {
     try {
@@ -252,14 +252,14 @@ TEST_F(ReferenceFramesTest, UnknownAndUnconnectedFramesAreNamedWithTheNearest) {
 }
 
 TEST_F(ReferenceFramesTest, BodyMayNotHaveTheNameOfTheWorldFrame) {
-  EXPECT_THROW(ReferenceFrames(scene_, "probe", buffer_), SceneError);
+  EXPECT_THROW(ReferenceFrames(scene_, FrameNames{"probe", ""}, buffer_), SceneError);
 }
 
 TEST_F(ReferenceFramesTest, OwnFramesMayNotHaveTheSameName) {
   scene_.bodies[0].links.push_back({"deck/tank", Isometry3d::Identity()});
   for (const std::string world : {"probe/tip", "probe/deck"}) {
     try {
-      const ReferenceFrames frames(scene_, world, buffer_);
+      const ReferenceFrames frames(scene_, {world, ""}, buffer_);
       ADD_FAILURE() << world;
     } catch (const SceneError& error) {
       const std::string text = error.what();
@@ -270,9 +270,20 @@ TEST_F(ReferenceFramesTest, OwnFramesMayNotHaveTheSameName) {
   }
 }
 
+TEST_F(ReferenceFramesTest, APrefixIsOfAllButTheWorlds) {
+  const ReferenceFrames frames(scene_, {"world", "left/"}, buffer_);
+  EXPECT_TRUE(frames.pose("world", bodies_).isApprox(Isometry3d::Identity()));
+  EXPECT_TRUE(frames.pose("left/probe", bodies_).isApprox(somePose()));
+  EXPECT_THROW(frames.pose("probe", bodies_), RequestError);
+  EXPECT_EQ(frames.movedFrames(),
+            (std::set<std::string>{"left/probe", "left/probe/base", "left/probe/tip", "left/world/tank"}));
+  // What would be the world's own name.
+  EXPECT_NO_THROW(ReferenceFrames(scene_, FrameNames{"probe", "left/"}, buffer_));
+}
+
 TEST_F(ReferenceFramesTest, TheTanksCornerIsKnown) {
   scene_.tank.origin = Vector3d(-0.5, -0.4, 0.1);
-  const ReferenceFrames frames(scene_, "world", buffer_);
+  const ReferenceFrames frames(scene_, {"world", ""}, buffer_);
   EXPECT_TRUE(frames.pose("world/tank", bodies_).translation().isApprox(scene_.tank.origin));
 }
 
