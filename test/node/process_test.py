@@ -14,6 +14,7 @@ import unittest
 
 import rosbag
 import rosgraph
+import roslaunch.arg_dump
 import roslaunch.config
 import roslib.packages
 import rospkg
@@ -435,6 +436,9 @@ class ProcessTest(unittest.TestCase):
             with open(file) as stream:
                 for argument in re.findall(r'<arg\s[^>]*>', stream.read()):
                     self.assertIn('doc="', argument)
+            # What `roslaunch --ros-args` shows: an argument without a default, or with an empty one, as required.
+            for name, (_, default) in roslaunch.arg_dump.get_args([file]).items():
+                self.assertTrue(default, name)
 
 
 if __name__ == '__main__':
