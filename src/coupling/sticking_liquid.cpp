@@ -146,7 +146,7 @@ std::vector<Matrix6d> attachStickingLiquid(const MacGrid& grid, const std::vecto
   }
   std::vector<StickingPart> parts;
   for (const auto& plane : found) parts.insert(parts.end(), plane.begin(), plane.end());
-  reopenNarrowGaps(l, solids.fluid, parts);
+  reopenNarrowGaps(l, liquid_distance, solids.fluid, parts);
   return giveToBodies(grid, bodies, liquid_distance, parts, solids);
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "scene/solid_body.h"
 #include "simulation/simulation.h"
 
@@ -43,6 +45,40 @@ TEST(NarrowGap, ClosesAndOpensAtAnyPlaceInTheGrid) {
       for (const double gap : {0.3, 0.6}) {
         EXPECT_NEAR(height(viscosity, top, gap, 7800.0, 20), top + 2.0, 0.05) << viscosity << " " << top << " " << gap;
         EXPECT_GT(height(viscosity, top, gap, 20.0, 8), top + gap + 2.5) << viscosity << " " << top << " " << gap;
+      }
+    }
+  }
+}
+
+// How far, in cells, a box rises in some steps that leaves `gap` cells of a full tank on all sides, and what then
+// carries it, in its displaced weight.
+std::pair<double, double> riseInFullTank(double viscosity, double gap, double density, int steps) {
+  Scene scene = fullTank(viscosity);
+  const Eigen::Vector3d side = scene.tank.size - 2.0 * gap * kCell * Eigen::Vector3d::Ones();
+  scene.bodies.push_back(boxBody("box", side, density, 0.5 * scene.tank.size));
+  Simulation simulation(scene);
+  for (int i = 0; i < steps; ++i) EXPECT_TRUE(simulation.step().committed());
+  const BodyState box = simulation.bodyStates()[0];
+  const double displaced = scene.liquid.density * side.prod() * scene.gravity.norm();
+  return {(box.X_WB.translation() - 0.5 * scene.tank.size).z() / kCell, box.liquid.force.z() / displaced};
+}
+
+// Nothing of the liquid is open by itself then. In one step a body that nothing carries would fall by 0.1 cells and
+// have met the floor.
+TEST(NarrowGap, CarriesABodyThatAllButFillsTheTank) {
+  for (const double viscosity : {2.0, 100.0}) {
+    for (const double gap : {0.1, 0.2, 0.3, 0.4, 0.5}) {
+      const auto [neutral, carried] = riseInFullTank(viscosity, gap, 1000.0, 5);
+      EXPECT_NEAR(neutral, 0.0, 1e-6) << viscosity << " " << gap;
+      EXPECT_NEAR(carried, 1.0, 1e-6) << viscosity << " " << gap;
+      for (const double density : {500.0, 1500.0}) {
+        const double first = riseInFullTank(viscosity, gap, density, 1).first;
+        const auto [rise, carries] = riseInFullTank(viscosity, gap, density, 5);
+        const double direction = density < 1000.0 ? 1.0 : -1.0;
+        EXPECT_GE(direction * first, 0.0) << viscosity << " " << gap << " " << density;
+        EXPECT_GE(direction * rise, direction * first) << viscosity << " " << gap << " " << density;
+        EXPECT_LT(direction * rise, 0.1 / viscosity) << viscosity << " " << gap << " " << density;
+        EXPECT_NEAR(carries, density / 1000.0, 0.02) << viscosity << " " << gap << " " << density;
       }
     }
   }
