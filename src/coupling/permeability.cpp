@@ -34,9 +34,8 @@ void Permeability::set(const StepProblem& problem, double largest_number, Veloci
   for (int a = 0; a < 3; ++a) {
     const OpenParts<double> open = problem.coefficients.open(a);
     const std::vector<double>& mass = problem.coefficients.mass[a];
-    share.transform(free[a], [&](std::ptrdiff_t f, float) {
-      return mass[f] > 0.0 ? static_cast<float>(open[f] / mass[f]) : 0.0F;
-    });
+    share.transform(
+        free[a], [&](std::ptrdiff_t f, float) { return mass[f] > 0.0 ? static_cast<float>(open[f] / mass[f]) : 0.0F; });
     assignZero(l.size, held);
     prolongateFaces(level.lattice, a, coarse_[a].data(), l, allPlanes(l), share, held.data());
     impulse_[a].transform(free[a], [&](std::ptrdiff_t f, float impulse) { return std::min(impulse, held[f]); });

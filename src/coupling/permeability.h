@@ -26,8 +26,7 @@ class Permeability {
  public:
   // largest_number: viscous number where the viscosity is largest. velocity: that of the problem, with more than one
   // level. free: the impulse of faces whose neighbours are held (buildFaceBlocks()).
-  void set(const StepProblem& problem, double largest_number, VelocityMultigrid& velocity,
-           const FaceRows<float>& free);
+  void set(const StepProblem& problem, double largest_number, VelocityMultigrid& velocity, const FaceRows<float>& free);
   // Whether k itself is what it was at the call before.
   bool lasted() const { return lasted_; }
   void forget() { generation_ = -1; }

@@ -254,8 +254,8 @@ void VariableViscosity::apply(const ViscosityField& field, StepProblem& problem)
     c.normal[a].transform(normal_[a], [&](std::ptrdiff_t i, float k) { return static_cast<float>(k * ratio[i]); });
     c.drag[a].transform(drag_[a], [&](std::ptrdiff_t i, float k) { return static_cast<float>(k * film[i]); });
     for (int s = 0; s < 2; ++s) {
-      c.shear[a][s].transform(
-          shear_[a][s], [&](std::ptrdiff_t i, float k) { return static_cast<float>(k * std::sqrt(edge[i])); });
+      c.shear[a][s].transform(shear_[a][s],
+                              [&](std::ptrdiff_t i, float k) { return static_cast<float>(k * std::sqrt(edge[i])); });
     }
     scaleRows(shear_rows_[a], applied_.data() + (1 + a) * size, problem.rows.shear[a]);
   }

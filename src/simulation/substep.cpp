@@ -65,7 +65,7 @@ void Simulation::Impl::prepareSolve(const StepWeights& w) {
   sampler.sample(plan.bodies, solids);
   if (hasSurface()) {
     FaceField<double>& ahead = scratch.other.velocity;
-    const double part = kSurfaceAhead * w.dt;
+    const double part = surfaceAhead(state.liquid_speed, scene.gravity.norm(), grid.h) * w.dt;
     for (int a = 0; a < 3; ++a) {
       const std::vector<double>&u = state.coupled.velocity[a], &rate = state.acceleration[a];
       ahead[a].resize(u.size());

@@ -6,6 +6,7 @@ namespace monolith {
 namespace {
 
 constexpr double kLargestRatio = 2.0 + 1e-6;
+constexpr double kFastSurface = 0.1;  // of gravity times the cell width: the square of a speed
 
 }  // namespace
 
@@ -15,6 +16,11 @@ StepWeights bdf2Weights(double dt, double last_dt) {
   if (!(last_dt > 0.0) || dt > kLargestRatio * last_dt) return eulerWeights(dt);
   const double r = dt / last_dt;
   return {2, dt, (1.0 + r) / (1.0 + 2.0 * r) * dt, r / (1.0 + 2.0 * r)};
+}
+
+double surfaceAhead(double liquid_speed, double gravity, double cell_width) {
+  const double fast = kFastSurface * gravity * cell_width, square = liquid_speed * liquid_speed;
+  return square < fast ? kSurfaceAhead * square / fast : kSurfaceAhead;
 }
 
 namespace {

@@ -18,7 +18,10 @@
 // resolution, feeds it for ever, and splashed water came to have more energy than it had fallen with. So the surface is
 // a little ahead in the solve, with the mean acceleration a^n of the step before, of which it would be a half exactly:
 //
-//   x^n + dt (u^n + c dt a^n),  c = 0.1:   a wave loses 3/4 c (omega dt)^4 of its height each step.
+//   x^n + dt (u^n + c dt a^n):   a wave loses 3/4 c (omega dt)^4 of its height each step,
+//
+// by c = 0.1 where liquid is as fast as a third of sqrt(g h) somewhere, by less where it is slower: low waves keep what
+// they have.
 //
 // The shortest waves that a grid holds, of two cells, would go beyond that in steps of sqrt(h/g) and more, and a
 // surface would never come to rest: see longestWaveStep().
@@ -41,8 +44,9 @@ StepWeights eulerWeights(double dt);
 // Backward Euler if the step is more than twice the last one (zero-stable up to 1 + sqrt(2)) or there is none.
 StepWeights bdf2Weights(double dt, double last_dt);
 
-// c
+// c, and its largest value. liquid_speed: no point of the liquid is faster.
 constexpr double kSurfaceAhead = 0.1;
+double surfaceAhead(double liquid_speed, double gravity, double cell_width);
 
 // s, up to which the shortest waves on deep liquid do not grow. With k = pi/h, omega^2 = g k and the damping nu k^2,
 // which is implicit, they are stable while (omega dt)^2 < (4 + 4 nu k^2 dt)/(1 + 2 c).

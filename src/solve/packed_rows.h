@@ -1,6 +1,6 @@
 #pragma once
-// A field of a lattice to be kept for later, exactly: x-rows, halo and all, whose entries are all the same bits are kept
-// as one of them. What rests or is far from everything takes next to nothing.
+// A field of a lattice to be kept for later, exactly: x-rows, halo and all, whose entries are all the same bits are
+// kept as one of them. What rests or is far from everything takes next to nothing.
 
 #include <algorithm>
 #include <cstddef>

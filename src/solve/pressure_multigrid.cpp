@@ -83,7 +83,8 @@ void PressureMultigrid::findKinds(const Lattice& l, const std::vector<std::uint8
     for (auto c = row; c < row + width; ++c) {
       if (kinds_[c] == kLiquid) continue;
       bool flows = false;
-      for (int a = 0; a < 3; ++a) flows = flows || network.whole(a, c) > 0.0F || network.whole(a, c + l.stride[a]) > 0.0F;
+      for (int a = 0; a < 3; ++a)
+        flows = flows || network.whole(a, c) > 0.0F || network.whole(a, c + l.stride[a]) > 0.0F;
       if (flows) kinds_[c] = kAir;
     }
   });
@@ -119,8 +120,7 @@ void PressureMultigrid::set(const Lattice& l, const std::vector<std::uint8_t>& h
 }
 
 template <class SomeNetwork>
-void PressureMultigrid::coarsen(const Lattice& from, const SomeNetwork& fine, const Lattice& l,
-                                Network& coarse) const {
+void PressureMultigrid::coarsen(const Lattice& from, const SomeNetwork& fine, const Lattice& l, Network& coarse) const {
   std::vector<float> room;
   for (int a = 0; a < 3; ++a) {
     restrictFaces(from, a, fine.allConductances(a, room), l, coarse.conductances[a]);
@@ -180,34 +180,37 @@ void PressureMultigrid::finish(const SomeNetwork& network, const std::vector<std
   level.partial = smoothed != nullptr;
   if (!level.blocks.wouldKeep(steady) || level.mask.size() != l.size) assignZero(l.size, level.mask);
   if (&level != &levels_[0]) assignZero(l.size, level.b);
-  level.blocks.build(l, {0}, [&](int, std::ptrdiff_t row, int width, auto& k) {
-    const std::uint8_t* kind = kinds.data() + row;
-    if (std::find(kind, kind + width, kLiquid) == kind + width) {
-      std::fill_n(level.mask.data() + row, width, 0.0f);
-      return false;
-    }
-    for (int i = 0; i < width; ++i) {
-      const auto c = row + i;
-      const bool liquid = kind[i] == kLiquid;
-      float sum = k[kToAir][i] = liquid ? network.toAir(c) : 0.0f;
-      for (int a = 0; a < 3; ++a) {
-        sum += k[kLow + a][i] = liquid ? network.conductance(a, c) : 0.0f;
-        sum += k[kHigh + a][i] = liquid ? network.conductance(a, c + l.stride[a]) : 0.0f;
-      }
-      level.mask[c] = k[kInverse][i] = sum > 0.0f ? 1.0f / sum : 0.0f;
-    }
-    if (smoothed == nullptr) return true;
-    // Next to smoothed cells the residual is wanted, but nothing is smoothed.
-    const auto sy = l.stride[1], sz = l.stride[2];
-    for (int i = 0; i < width; ++i) {
-      const std::uint8_t* at = smoothed->data() + row + i;
-      if (*at) continue;
-      k[kInverse][i] = 0.0f;
-      if (at[-1] || at[1] || at[-sy] || at[sy] || at[-sz] || at[sz]) continue;
-      for (int q = kToAir; q < kInverse; ++q) k[q][i] = 0.0f;
-    }
-    return true;
-  }, steady);
+  level.blocks.build(
+      l, {0},
+      [&](int, std::ptrdiff_t row, int width, auto& k) {
+        const std::uint8_t* kind = kinds.data() + row;
+        if (std::find(kind, kind + width, kLiquid) == kind + width) {
+          std::fill_n(level.mask.data() + row, width, 0.0f);
+          return false;
+        }
+        for (int i = 0; i < width; ++i) {
+          const auto c = row + i;
+          const bool liquid = kind[i] == kLiquid;
+          float sum = k[kToAir][i] = liquid ? network.toAir(c) : 0.0f;
+          for (int a = 0; a < 3; ++a) {
+            sum += k[kLow + a][i] = liquid ? network.conductance(a, c) : 0.0f;
+            sum += k[kHigh + a][i] = liquid ? network.conductance(a, c + l.stride[a]) : 0.0f;
+          }
+          level.mask[c] = k[kInverse][i] = sum > 0.0f ? 1.0f / sum : 0.0f;
+        }
+        if (smoothed == nullptr) return true;
+        // Next to smoothed cells the residual is wanted, but nothing is smoothed.
+        const auto sy = l.stride[1], sz = l.stride[2];
+        for (int i = 0; i < width; ++i) {
+          const std::uint8_t* at = smoothed->data() + row + i;
+          if (*at) continue;
+          k[kInverse][i] = 0.0f;
+          if (at[-1] || at[1] || at[-sy] || at[sy] || at[-sz] || at[sz]) continue;
+          for (int q = kToAir; q < kInverse; ++q) k[q][i] = 0.0f;
+        }
+        return true;
+      },
+      steady);
   // Cells of coarse levels that are continued into hold something, too.
   if (&level != &levels_[0]) level.build = -1;
   for (auto* field : {&level.x, &level.next, &level.d}) level.blocks.clear(0, level.build, *field);

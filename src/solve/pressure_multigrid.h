@@ -107,7 +107,7 @@ class PressureMultigrid {
   void descend(std::size_t index);
 
   std::vector<Level> levels_;
-  std::vector<std::uint8_t> kinds_;  // of the finest level
+  std::vector<std::uint8_t> kinds_;           // of the finest level
   std::vector<std::int32_t> coarsest_cells_;  // if few enough to be solved directly
   Eigen::MatrixXf inverse_;
 };

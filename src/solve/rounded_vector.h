@@ -14,8 +14,8 @@ namespace monolith {
 class RoundedVector {
  public:
   // Keeps the entries of x in these parts, and rounds x to what it keeps; where an entry is no number, so are those of
-  // its group. Entries from `rest` on, the start of a part, differ too much from their neighbours for that, and are few:
-  // they are kept as they are. 11 bytes and 5 flops an entry: bound by memory.
+  // its group. Entries from `rest` on, the start of a part, differ too much from their neighbours for that, and are
+  // few: they are kept as they are. 10 bytes and 5 flops an entry: bound by memory.
   void take(const Parts& parts, std::ptrdiff_t rest, std::vector<float>& x);
 
   // y += a times what was taken of a part; y: where its first entry is.

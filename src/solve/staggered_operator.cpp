@@ -67,8 +67,8 @@ void applyMomentum(const StaggeredCoefficients<Real>& c, const FaceField<Real>& 
       const float *kq = q_factor.row(row), *kq_next = q_factor.row(row + sq);
 #pragma omp simd
       for (int i = 0; i < width; ++i) {
-        const Real force = s[i - sa] - s[i] + kp[i] * tp[i] - kp_next[i] * tp[i + sp] + kq[i] * tq[i] -
-                           kq_next[i] * tq[i + sq];
+        const Real force =
+            s[i - sa] - s[i] + kp[i] * tp[i] - kp_next[i] * tp[i + sp] + kq[i] * tq[i] - kq_next[i] * tq[i + sq];
         out[i] = m[i] > Real(0) ? (m[i] + d[i]) * u[i] + force : Real(0);
       }
     }

@@ -171,11 +171,14 @@ void buildFaceBlocks(const StaggeredCoefficients<From>& c, FaceBlocks<Real>& out
   const bool keeps = out.wouldKeep(steady);
   // Along the rows of their own axis faces on the low wall have no unknown.
   const std::vector<int> first = {l.periodic[0] ? 0 : 1, 0, 0};
-  out.build(l, first, [&](int a, std::ptrdiff_t row, int width, typename FaceBlocks<Real>::Row& k) {
-    if (isZero(c.mass[a].data() + row, width)) return false;
-    fillFaceRow<Real>(c, a, row, width, k);
-    return true;
-  }, steady);
+  out.build(
+      l, first,
+      [&](int a, std::ptrdiff_t row, int width, typename FaceBlocks<Real>::Row& k) {
+        if (isZero(c.mass[a].data() + row, width)) return false;
+        fillFaceRow<Real>(c, a, row, width, k);
+        return true;
+      },
+      steady);
   for (const auto& [fields, place] : {std::pair(transfer, S::kTransfer), std::pair(impulse, S::kImpulse)}) {
     if (fields == nullptr) continue;
     bool all = !keeps;
@@ -332,9 +335,9 @@ void project(const Lattice& l, const Planes& planes, const FaceRows<float>& impu
   }
 }
 
-#define MONOLITH_INSTANTIATE(Real, From)                                                                  \
-  template void buildFaceBlocks(const StaggeredCoefficients<From>&, FaceBlocks<Real>&, FaceRows<float>*,  \
-                                FaceRows<float>*, const SteadyRows*);                                     \
+#define MONOLITH_INSTANTIATE(Real, From)                                                                 \
+  template void buildFaceBlocks(const StaggeredCoefficients<From>&, FaceBlocks<Real>&, FaceRows<float>*, \
+                                FaceRows<float>*, const SteadyRows*);                                    \
   template void buildCellBlocks(const StaggeredCoefficients<From>&, CellBlocks<Real>&, const SteadyRows*);
 MONOLITH_INSTANTIATE(double, double)
 MONOLITH_INSTANTIATE(float, double)

@@ -33,7 +33,7 @@ struct FaceStencil {
     kInverse = 11,  // 1 over the smoothing diagonal
     kTransfer,      // share of a correction that comes from the coarser level: 1 - tie to solids/diagonal
     kOpen,
-    kImpulse,  // open/effective mass: what a difference of pressure gives a face while viscosity holds its neighbours
+    kImpulse,  // open/effective mass: what a difference of pressure gives a face while its neighbours are held
     kCount
   };
 };
@@ -51,8 +51,8 @@ using CellBlocks = StencilBlocks<Real, CellStencil::kCount>;
 template <class Real>
 using Faces = std::array<Real*, 3>;
 
-// Compresses a level. transfer and impulse are those of the stencils, as fields; either may be null. Of steady rows what
-// is there is kept.
+// Compresses a level. transfer and impulse are those of the stencils, as fields; either may be null. Of steady rows
+// what is there is kept.
 template <class Real, class From>
 void buildFaceBlocks(const StaggeredCoefficients<From>& c, FaceBlocks<Real>& out, FaceRows<float>* transfer,
                      FaceRows<float>* impulse, const SteadyRows* steady = nullptr);

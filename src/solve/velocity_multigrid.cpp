@@ -18,8 +18,8 @@ Faces<const float> constView(const Faces<float>& f) { return {f[0], f[1], f[2]};
 }  // namespace
 
 void VelocityMultigrid::set(const Lattice& lattice, const FaceBlocks<float>& fine, const FaceRows<float>& transfer,
-                            const std::vector<StaggeredCoefficients<float>>& coarse, std::size_t count,
-                            long generation, int smoother_degree) {
+                            const std::vector<StaggeredCoefficients<float>>& coarse, std::size_t count, long generation,
+                            int smoother_degree) {
   degree_ = smoother_degree;
   levels_.resize(count);
   for (std::size_t i = 0; i < count; ++i) {

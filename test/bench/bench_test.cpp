@@ -69,9 +69,9 @@ TEST(Bench, AStepTakesNoMoreWorkThanItDid) {
   const struct {
     const char* scene;
     double flops, bytes, iterations, memory;  // flops and streamed bytes a step and cell
-  } budgets[] = {{"--viscous-number 1", 5800.0, 5900.0, 5.6, 1490.0},
-                 {"--viscous-number 100", 12000.0, 11200.0, 8.6, 1680.0},
-                 {"--viscous-number 100 --bodies 26 --tolerance 1e-5", 25000.0, 25300.0, 18.6, 2860.0}};
+  } budgets[] = {{"--viscous-number 1", 5900.0, 5900.0, 5.6, 1020.0},
+                 {"--viscous-number 100", 12200.0, 11300.0, 8.6, 1200.0},
+                 {"--viscous-number 100 --bodies 26 --tolerance 1e-5", 25300.0, 25300.0, 18.6, 2060.0}};
   constexpr double kMore = 1.1;
   const std::string file = testing::TempDir() + "work.json";
   for (const auto& budget : budgets) {

@@ -266,7 +266,8 @@ class ProcessTest(unittest.TestCase):
             self.assertEqual(code, 0, output)
             for moved in ('"ball", "probe", "post"',
                           '"world/tank", "ball/core", "probe/cube", "probe/tip", "post/core"'):
-                self.assertEqual(output.count(NODE + ' publishes tf frames of this node too: ' + moved + ';'), 1, output)
+                self.assertEqual(output.count(NODE + ' publishes tf frames of this node too: ' + moved + ';'), 1,
+                                 output)
             frames.clear()
             static.clear()
             code, output = self.finish(*arguments, '_frame_prefix:=right/', name='run_right')

@@ -205,7 +205,7 @@ TEST(Container, AWallOfTwoCellsKeepsASplashFromWhatIsBehindIt) {
 TEST(Container, NoFilmStaysOnAWall) {
   Simulation simulation(divided(4.0, 0.0, 0.0));
   double highest = 0.0;
-  run(simulation, 4.0);
+  run(simulation, 8.0);
   for (const SurfacePoint& point : simulation.surfacePoints()) {
     highest = std::max<double>(highest, point.position[2]);
   }
