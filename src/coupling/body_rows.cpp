@@ -86,7 +86,6 @@ namespace {
 struct IdleTurns {
   Eigen::Matrix3d projection = Eigen::Matrix3d::Zero();
   Eigen::Vector3d from_centre_of_mass = Eigen::Vector3d::Zero();
-  bool any = false;
 };
 
 IdleTurns idleTurns(const RigidBody& body) {
@@ -100,10 +99,7 @@ IdleTurns idleTurns(const RigidBody& body) {
   } else if (shape.kind == Shape::Kind::kCylinder) {
     const Eigen::Vector3d axis = X_WG.linear().col(2);
     out.projection = axis * axis.transpose();
-  } else {
-    return out;
   }
-  out.any = true;
   return out;
 }
 
@@ -115,7 +111,6 @@ void dropIdleTurns(const std::vector<RigidBody>& bodies, std::vector<BodyRow>& r
 #pragma omp parallel for schedule(static)
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const IdleTurns& turns = idle[rows[i].body];
-    if (!turns.any) continue;
     Vector6d& row = rows[i].coefficient;
     const Eigen::Vector3d about_centre = row.tail<3>() - turns.from_centre_of_mass.cross(row.head<3>());
     row.tail<3>() -= turns.projection * about_centre;

@@ -80,8 +80,8 @@ void buildDivergenceRows(const MacGrid& grid, const SolidFractions& solids, cons
 // A ball that turns displaces nothing, and neither does a cylinder that turns about its axis, while the faces that one
 // of them cuts tell some flux: as much torque of the pressure, a thousandth of the weight times the radius of a ball 5
 // cells across that floats, which spins it on waves. Takes from rows of divergence what they have of such turns: with
-// c their centre, P the projection on the turns that are left, and the row (f, t) about the centre of mass p,
-//   t <- t - (1 - P) (t - (c - p) x f).
+// c their centre, P the projection on such turns, and the row (f, t) about the centre of mass p,
+//   t <- t - P (t - (c - p) x f).
 // Not for liquid that sticks to what turns.
 void dropIdleTurns(const std::vector<RigidBody>& bodies, std::vector<BodyRow>& rows);
 

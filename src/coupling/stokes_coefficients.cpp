@@ -190,9 +190,9 @@ void buildCoefficients(const Lattice& l, const StokesGeometry& geometry, double 
     int j = 0;
     while (j < l.faceEnd(1) && keeps(j, k)) ++j;
     if (j == l.faceEnd(1)) continue;
-    ViscousPlane plane;
+    thread_local ViscousPlane plane;
+    thread_local std::vector<std::uint8_t> mark;
     plane.unpack(out, k);
-    std::vector<std::uint8_t> mark;
     for (; j < l.faceEnd(1); ++j) {
       if (keeps(j, k)) continue;
       const std::ptrdiff_t row = l.index(0, j, k);
