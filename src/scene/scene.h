@@ -3,6 +3,8 @@
 // SI units. World frame W: z up, the tank's floor at z = tank.origin.z() (REP-103).
 
 #include <Eigen/Geometry>
+#include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -65,24 +67,63 @@ struct PrescribedMotion {
   bool in_place = false;
 };
 
+// How the body moves that a joint leads to, relative to the one before it: turns about or slides along an axis.
+enum class JointType { kRevolute, kPrismatic };
+
+// Motion of a joint that nothing stops: rate(t) = rate + amplitude * 2 pi frequency * cos(2 pi frequency t + phase).
+struct PrescribedJointMotion {
+  double rate = 0.0;                                       // rad/s, m/s
+  double amplitude = 0.0;                                  // rad, m
+  double frequency = 0.0;                                  // Hz
+  double phase = 0.0;                                      // rad
+};
+
+// Effort of a joint (N m, N), limited to its `most_effort` in all:
+//   commanded effort + stiffness (commanded position - position) + damping (commanded velocity - velocity)
+struct JointServo {
+  double stiffness = 0.0;                                  // N m/rad, N/m
+  double damping = 0.0;                                    // N m s/rad, N s/m
+};
+
+// By which a body hangs on another. Units of a revolute joint, then of a prismatic one. A continuous joint is a revolute one without limits.
+struct JointDescription {
+  std::string name;                                        // as in the URDF
+  JointType type = JointType::kRevolute;
+  int parent = -1;                                         // in Scene::bodies, before the body itself
+  Eigen::Isometry3d X_PJ = Eigen::Isometry3d::Identity();  // the body frame, in the parent's, at position 0
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();         // unit, in the body frame
+  double lower = -std::numeric_limits<double>::infinity();  // rad, m
+  double upper = std::numeric_limits<double>::infinity();  // rad, m
+  double damping = 0.0;                                    // N m s/rad, N s/m
+  double friction = 0.0;                                   // N m, N: Coulomb's
+  double most_effort = std::numeric_limits<double>::infinity();  // N m, N
+  JointServo servo;
+  std::optional<PrescribedJointMotion> prescribed;
+  double position = 0.0;                                   // initial, rad, m
+  double velocity = 0.0;                                   // initial, rad/s, m/s
+};
+
 struct LinkFrame {
   std::string name;
   Eigen::Isometry3d X_BL = Eigen::Isometry3d::Identity();  // link frame in the body frame
 };
 
-// One rigid body: the links that fixed joints hold together. Body frame B = frame of the URDF's root link.
+// One rigid body: the links that fixed joints hold together. Body frame B = frame of the first of them, the URDF's root
+// link or the child of a movable joint.
 struct BodyDescription {
-  std::string name;
+  std::string name;                                        // the scene's; beyond a joint NAME/LINK
   std::string source;                                      // URDF file or parameter, for messages
   std::string urdf_xml;                                    // the text itself, for visual markers
   std::string material;                                    // for ContactDescription; may be empty
-  BodyMotion motion = BodyMotion::kFree;
+  BodyMotion motion = BodyMotion::kFree;                   // beyond a joint kFree
   PrescribedMotion prescribed;
+  std::optional<JointDescription> joint;                   // by which it hangs on another
+  bool self_collision = false;                             // with bodies of the same URDF, but for neighbours
   double mass = 1.0;                                       // kg
   Eigen::Vector3d p_BBcm = Eigen::Vector3d::Zero();        // m, centre of mass in B
   Eigen::Matrix3d inertia_Bcm = Eigen::Matrix3d::Identity();  // kg m^2 about the centre of mass, axes of B
   std::vector<Shape> shapes;                               // collision shapes, X_BG in B
-  std::vector<LinkFrame> links;                            // the root link first
+  std::vector<LinkFrame> links;                            // that of the body frame first
   Eigen::Isometry3d X_WB = Eigen::Isometry3d::Identity();  // initial pose
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();      // initial, of the origin of B, in W, m/s
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  // initial, in W, rad/s
