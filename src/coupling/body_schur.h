@@ -1,9 +1,10 @@
 #pragma once
 // How much the liquid resists the motion of the free bodies, seen through one preconditioner cycle:
-//   R ~ A_vv - M - [A_vu, -C_v^T] F^-1 [A_uv; -C_v],   6n x 6n, symmetric positive semi-definite.
+//   R ~ S^T (A_vv - M - [A_vu, -C_v^T] F^-1 [A_uv; -C_v]) S,   symmetric positive semi-definite.
 // Added mass and viscous resistance in one matrix; it steers the solve, and never decides its answer.
 
 #include <Eigen/Dense>
+#include <Eigen/Sparse>
 
 #include "coupling/body_columns.h"
 #include "coupling/liquid_preconditioner.h"
@@ -12,9 +13,9 @@ namespace monolith {
 
 class BodySchur {
  public:
-  // In the units of the columns.
+  // S: from the unknowns to the twists, in the units of the columns.
   static Eigen::MatrixXd resistance(const Lattice& lattice, const BodyColumns<float>& columns,
-                                    LiquidPreconditioner& preconditioner);
+                                    const Eigen::SparseMatrix<double>& S, LiquidPreconditioner& preconditioner);
 };
 
 }  // namespace monolith

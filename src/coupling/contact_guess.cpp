@@ -31,8 +31,9 @@ ContactGuess::ContactGuess(const ContactRows& rows, Eigen::VectorXd& impulses, d
   bodies_.contacts.resize(m);
   for (Eigen::Index c = 0; c < m; ++c) {
     for (Eigen::Index first = 0; first < rows.J.cols(); first += 6) {
-      Eigen::Matrix<double, 3, 6> J;
-      J << rows.J.block<1, 6>(c, first), rows.J.block<2, 6>(m + 2 * c, first);
+      const Eigen::Index width = std::min<Eigen::Index>(6, rows.J.cols() - first);
+      BodyResponse::Contact::Rows J(3, width);
+      J << rows.J.block(c, first, 1, width), rows.J.block(m + 2 * c, first, 2, width);
       if (!J.isZero(0.0)) bodies_.contacts[c].of.emplace_back(first, J);
     }
   }

@@ -27,19 +27,25 @@ Eigen::Matrix<double, 3, 2> tangentBasis(const Eigen::Vector3d& n) {
   return t;
 }
 
+// m/s, that a gap (m) lets its contact close with.
+double gapBias(double gap, double dt) {
+  return gap < 0.0 ? kRecovery * gap / std::max(dt, kRecoveryTime) : gap / dt;
+}
+
 }  // namespace
 
 ContactRows buildContactRows(const StepProblem& problem, const std::vector<Contact>& contacts,
-                             const std::vector<ContactLaw>& laws, const std::vector<Vector6d>& twists,
+                             const std::vector<ContactLaw>& laws, const std::vector<JointStop>& stops,
                              double resting_speed) {
-  const auto m = static_cast<Eigen::Index>(contacts.size());
+  const auto m = static_cast<Eigen::Index>(contacts.size() + stops.size());
   ContactRows out;
-  out.J = Eigen::MatrixXd::Zero(3 * m, problem.bodyUnknowns());
+  out.stops = stops;
+  Eigen::MatrixXd of_twists = Eigen::MatrixXd::Zero(3 * m, problem.coordinates.S().rows());
   out.bias = Eigen::VectorXd::Zero(3 * m);
   out.friction = Eigen::VectorXd::Zero(m);
   out.softness = Eigen::VectorXd::Ones(3 * m);
   std::map<std::pair<int, int>, int> pairs;
-  for (Eigen::Index c = 0; c < m; ++c) {
+  for (Eigen::Index c = 0; c < static_cast<Eigen::Index>(contacts.size()); ++c) {
     const Contact& contact = contacts[c];
     const auto number = static_cast<int>(pairs.size());
     out.pair.push_back(pairs.try_emplace({contact.body_a, contact.body_b}, number).first->second);
@@ -61,31 +67,36 @@ ContactRows buildContactRows(const StepProblem& problem, const std::vector<Conta
         j.head<3>() = sign * axis[d];
         j.tail<3>() = sign * (point - rigid.p_WBcm).cross(axis[d]);
         const int place = problem.free_index[body];
-        if (place < 0) {
-          out.bias[row[d]] += j.dot(twists[body]);
-        } else {
-          out.J.block<1, 6>(row[d], 6 * place) += j.transpose();
-        }
+        out.bias[row[d]] += j.dot(problem.given[body]);
+        if (place >= 0) of_twists.block<1, 6>(row[d], 6 * place) += j.transpose();
       }
     }
-    out.bias[c] +=
-        contact.gap < 0.0 ? kRecovery * contact.gap / std::max(problem.dt, kRecoveryTime) : contact.gap / problem.dt;
+    out.bias[c] += gapBias(contact.gap, problem.dt);
     // An impact within this step: it separates at the given part of its speed. What merely rests does not bounce.
     const bool closes = contact.gap + approach * problem.dt <= 0.0;
     if (laws[c].restitution > 0.0 && closes && approach < -resting_speed) {
       out.bias[c] = std::min(out.bias[c], 0.0) + laws[c].restitution * approach;
     }
   }
+  out.J = of_twists * problem.coordinates.S();
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    const auto c = static_cast<Eigen::Index>(contacts.size() + i);
+    const JointStop& stop = stops[i];
+    out.J(c, problem.coordinates.ofJoint(stop.body)) = stop.sign * stop.radius;
+    out.bias[c] = stop.radius * gapBias(stop.gap, problem.dt);
+    out.pair.push_back(static_cast<int>(pairs.size() + i));
+  }
   return out;
 }
 
 Eigen::VectorXd warmStart(const StepProblem& problem, const ContactRows& rows, const std::vector<Contact>& contacts,
-                          const std::vector<ContactForce>& last) {
+                          const ContactForces& last_forces) {
+  const std::vector<ContactForce>& last = last_forces.contacts;
   const Eigen::Index m = rows.count();
   Eigen::VectorXd r = Eigen::VectorXd::Zero(3 * m);
   const double impulse = problem.dt / problem.impulse_scale;
   std::vector<char> taken(last.size(), 0);  // no force counts twice
-  for (Eigen::Index c = 0; c < m; ++c) {
+  for (Eigen::Index c = 0; c < static_cast<Eigen::Index>(contacts.size()); ++c) {
     std::size_t at = last.size();
     double least = kSamePlace * problem.grid.h;
     for (std::size_t i = 0; i < last.size(); ++i) {
@@ -104,16 +115,23 @@ Eigen::VectorXd warmStart(const StepProblem& problem, const ContactRows& rows, c
     r[c] = impulse * last[at].normal;
     r.segment<2>(m + 2 * c) = impulse * rows.tangents[c].transpose() * last[at].friction;
   }
+  for (std::size_t i = 0; i < rows.stops.size(); ++i) {
+    const JointStop& stop = rows.stops[i];
+    for (const StopForce& old : last_forces.stops) {
+      if (old.body != stop.body || old.sign != stop.sign) continue;
+      r[static_cast<Eigen::Index>(contacts.size() + i)] = impulse * old.effort / stop.radius;
+    }
+  }
   return r;
 }
 
 void distributeImpulses(const StepProblem& problem, const ContactRows& rows, const std::vector<Contact>& contacts,
-                        const Eigen::VectorXd& r, std::vector<ContactForce>& forces, std::vector<Wrench>& wrenches) {
+                        const Eigen::VectorXd& r, ContactForces& forces, std::vector<Wrench>& wrenches) {
   const Eigen::Index m = rows.count();
   const double newton = problem.impulse_scale / problem.dt;
-  forces.clear();
+  forces = ContactForces();
   wrenches.assign(problem.bodies->size(), Wrench());
-  for (Eigen::Index c = 0; c < m; ++c) {
+  for (Eigen::Index c = 0; c < static_cast<Eigen::Index>(contacts.size()); ++c) {
     ContactForce at;
     at.contact = contacts[c];
     at.normal = newton * std::max(r[c], 0.0);
@@ -125,7 +143,12 @@ void distributeImpulses(const StepProblem& problem, const ContactRows& rows, con
       wrenches[body].force += sign * force;
       wrenches[body].torque += sign * (point - (*problem.bodies)[body].p_WBcm).cross(force);
     }
-    forces.push_back(at);
+    forces.contacts.push_back(at);
+  }
+  for (std::size_t i = 0; i < rows.stops.size(); ++i) {
+    const JointStop& stop = rows.stops[i];
+    const double push = std::max(r[static_cast<Eigen::Index>(contacts.size() + i)], 0.0);
+    forces.stops.push_back({stop.body, stop.sign, newton * stop.radius * push});
   }
 }
 

@@ -37,8 +37,8 @@ struct CoupledSystem::Impl {
   double rhs_norm = 0.0;  // of the last solve, where viscosity varies
 
   // Of the right side in rhs.
-  CoupledReport solve(const std::vector<Vector6d>& free_twists, const std::vector<Contact>& contacts,
-                      const std::vector<ContactLaw>& laws, const Eigen::Vector3d& gravity,
+  CoupledReport solve(const std::vector<Contact>& contacts, const std::vector<ContactLaw>& laws,
+                      const std::vector<JointStop>& stops, const Eigen::Vector3d& gravity,
                       const CoupledOptions& options, CoupledState& state);
   // Velocities and pressures of a state where they are unknowns; all twists.
   void load(const CoupledState& state) {
@@ -127,6 +127,17 @@ void CoupledSystem::assembleVariable(SolidFractions& solids, const std::vector<R
   impl_->viscosity.start(impl_->problem, reference);
 }
 
+void CoupledSystem::setJointResistance(const std::vector<double>& resistance) {
+  impl_->problem.joint_resistance = resistance;
+}
+
+void CoupledSystem::changeJointResistance(const std::vector<double>& resistance) {
+  impl_->problem.joint_resistance = resistance;
+  impl_->problem.setUnknownScales();
+  // Where viscosity varies, that is to come.
+  if (impl_->problem.cell_viscosity.empty()) impl_->solver->prepare(impl_->problem);
+}
+
 void CoupledSystem::setStuckTwists(const std::vector<Vector6d>& twists) { impl_->problem.stuck_twists = twists; }
 
 void CoupledSystem::evaluateViscosity(const ViscosityLaw& law, const CoupledState& state, ViscosityField& field) {
@@ -148,12 +159,13 @@ double CoupledSystem::viscousChange(const CoupledState& solution, const Viscosit
 
 CoupledReport CoupledSystem::solve(FaceField<double>& free_velocity, const std::vector<Vector6d>& free_twists,
                                    const std::vector<Contact>& contacts, const std::vector<ContactLaw>& laws,
-                                   const Eigen::Vector3d& gravity, const CoupledOptions& options, CoupledState& state) {
+                                   const std::vector<JointStop>& stops, const Eigen::Vector3d& gravity,
+                                   const CoupledOptions& options, CoupledState& state) {
   Impl& m = *impl_;
   CoupledReport report;
   report.message = m.problem.rightSide(std::move(free_velocity), free_twists, gravity, m.rhs);
   if (report.message.empty()) {
-    report = m.solve(free_twists, contacts, laws, gravity, options, state);
+    report = m.solve(contacts, laws, stops, gravity, options, state);
   } else {
     report.status = SolveStatus::kInconsistent;
   }
@@ -161,25 +173,26 @@ CoupledReport CoupledSystem::solve(FaceField<double>& free_velocity, const std::
   return report;
 }
 
-CoupledReport CoupledSystem::Impl::solve(const std::vector<Vector6d>& free_twists, const std::vector<Contact>& contacts,
-                                         const std::vector<ContactLaw>& laws, const Eigen::Vector3d& gravity,
+CoupledReport CoupledSystem::Impl::solve(const std::vector<Contact>& contacts, const std::vector<ContactLaw>& laws,
+                                         const std::vector<JointStop>& stops, const Eigen::Vector3d& gravity,
                                          const CoupledOptions& options, CoupledState& state) {
   const StepProblem& p = problem;
   if (!p.cell_viscosity.empty()) rhs_norm = stepNorm(p, rhs);
   // Initial guess.
   take(state);
   for (std::size_t b = 0; b < p.bodies->size(); ++b) {
-    if (p.free_index[b] < 0) x.bodies[b] = free_twists[b];
+    if (p.free_index[b] < 0) x.bodies[b] = p.given[b];
   }
 
   const ContactRows rows =
-      buildContactRows(p, contacts, laws, free_twists, kRestingSteps * gravity.norm() * p.dt);
+      buildContactRows(p, contacts, laws, stops, kRestingSteps * gravity.norm() * p.dt);
   Eigen::VectorXd r = warmStart(p, rows, contacts, state.contact_forces);
-  CoupledReport report = contacts.empty()                       ? solver->solve(rhs, options, x)
+  CoupledReport report = rows.count() == 0                       ? solver->solve(rhs, options, x)
                          : coupling == CouplingName::kIterative ? solveIteratively(*solver, p, rhs, rows, options, x, r)
                                                                 : solver->solveWithContacts(rhs, rows, options, x, r);
   const bool converged = report.status == SolveStatus::kConverged;
   if (converged) {
+    for (const int b : p.free) x.bodies[b] += p.given[b];
     state.twists = x.bodies;
     p.results(x, gravity, state.liquid, report.divergence, rhs.pressure);  // which has served
   }

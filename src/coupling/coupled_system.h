@@ -18,7 +18,7 @@ struct CoupledState {
   std::vector<Vector6d> twists;  // of all bodies
   std::vector<Wrench> liquid;    // mean over the step, on each body
   std::vector<Wrench> contact;
-  std::vector<ContactForce> contact_forces;
+  ContactForces contact_forces;
 };
 
 class CoupledSystem {
@@ -47,16 +47,20 @@ class CoupledSystem {
   // What the law makes of the velocities of a state.
   void evaluateViscosity(const ViscosityLaw& law, const CoupledState& state, ViscosityField& field);
   void setViscosity(const ViscosityField& field);
+  // Impulse of a step by velocity of the bodies' joints, N m s^2/rad or N s^2/m; from the next assembly on, or
+  // of this one.
+  void setJointResistance(const std::vector<double>& resistance);
+  void changeJointResistance(const std::vector<double>& resistance);
   // After solve(), of its solution: how much the viscous forces change with that viscosity, relative to |b| as the
   // residual.
   double viscousChange(const CoupledState& solution, const ViscosityField& next);
 
   // free_velocity: u*, gravity included; used up, only its memory is given back. free_twists: v* of free bodies, the
-  // prescribed twist of the others. laws: one per contact. Gravity (m/s^2) is what acts on the liquid that sticks to
+  // prescribed twist of the others. laws: one per contact. stops: ends of joints' ranges. Gravity (m/s^2) is what acts on the liquid that sticks to
   // bodies. Where the report does not say that it converged, the fields of the state are not those of any solution.
   [[nodiscard]] CoupledReport solve(FaceField<double>& free_velocity, const std::vector<Vector6d>& free_twists,
                                     const std::vector<Contact>& contacts, const std::vector<ContactLaw>& laws,
-                                    const Eigen::Vector3d& gravity, const CoupledOptions& options, CoupledState& state);
+                                    const std::vector<JointStop>& stops, const Eigen::Vector3d& gravity, const CoupledOptions& options, CoupledState& state);
 
   const StepProblem& problem() const;
   // Kinetic energy (J) and momentum (kg m/s) of the liquid that sticks to the bodies, when these have `twists`.

@@ -69,7 +69,7 @@ void DirectSolver::Impl::prepare(StepProblem& p) {
   if (A_inverse_B.size() > 0) A_inverse_B = factor.solve(Eigen::MatrixXd(B));
   Eigen::MatrixXd S = B.transpose() * A_inverse_B;
   S = 0.5 * (S + S.transpose()).eval();
-  for (std::size_t b = 0; b < p.free.size(); ++b) S.block<6, 6>(6 * b, 6 * b) += p.inertia[b];
+  S.topLeftCorner(n, n) += p.bodyInertia();
   S.bottomRightCorner(border, border).diagonal().array() -= kPin;
   if (S.size() > 0) small.compute(S);
   K = S.size() > 0 ? Eigen::MatrixXd(small.inverse().topLeftCorner(n, n)) : Eigen::MatrixXd(0, 0);
@@ -82,10 +82,10 @@ void DirectSolver::Impl::backSubstitute(const StepVector& rhs, StepVector& x) co
   Eigen::VectorXd solution = s.unknowns() > 0 ? Eigen::VectorXd(factor.solve(c)) : c;
   if (B.cols() > 0) {
     Eigen::VectorXd g = -(B.transpose() * solution);
-    g.head(problem->bodyUnknowns()) += gatherBodies(*problem, rhs.bodies);
+    g.head(problem->bodyUnknowns()) += problem->coordinates.gatherForces(rhs.bodies);
     const Eigen::VectorXd z = small.solve(g);
     solution += A_inverse_B * z;
-    scatterBodies(*problem, z.head(problem->bodyUnknowns()), x.bodies);
+    problem->coordinates.scatterMotion(z.head(problem->bodyUnknowns()), x.bodies);
   }
   s.velocityAndPressure(solution, f, x);
 }
@@ -140,10 +140,10 @@ CoupledReport DirectSolver::solveWithContacts(StepVector& rhs, const ContactRows
   if (report.status != SolveStatus::kConverged || contacts.count() == 0) return report;
   Eigen::VectorXd compliance;
   const Eigen::MatrixXd D = contactResponse(contacts, impl_->K, compliance);
-  const Eigen::VectorXd w = contacts.J * gatherBodies(p, x.bodies) + contacts.bias;
+  const Eigen::VectorXd w = contacts.J * p.coordinates.gatherMotion(x.bodies) + contacts.bias;
   const FrictionReport friction = solveFrictionalContact({D, w, contacts.friction}, kSmallTolerance, r);
   StepVector pushed = rhs;
-  scatterBodies(p, gatherBodies(p, rhs.bodies) + contacts.J.transpose() * r, pushed.bodies);
+  p.coordinates.scatterForces(p.coordinates.gatherForces(rhs.bodies) + contacts.J.transpose() * r, pushed.bodies);
   CoupledReport second = impl_->solve(pushed, options.tolerance, x);
   second.solves += report.solves;
   second.friction_iterations = friction.iterations;

@@ -60,7 +60,7 @@ struct FastSolver::Impl {
       system.setForces(Eigen::VectorXd::Unit(n, i), push);
       const double goal = std::max(options.tolerance, kResponseTolerance) * push.rest[i];
       if (!system.solve(push, answer, {goal}, options, report).converged) return false;
-      K.col(i) = system.twists(answer);
+      K.col(i) = system.motionOf(answer);
     }
     K = 0.5 * (K + K.transpose()).eval();
     system.adoptResponse(K);
@@ -115,7 +115,7 @@ CoupledReport FastSolver::solveWithContacts(StepVector& rhs_fields, const Contac
   PackedSystem& system = m.system;
   system.updateSchur();
   BorderedVector rhs = system.forces(rhs_fields), x = system.motion(x_fields);
-  double rhs_norm = std::hypot(rhs.velocity_norm, rhs.pressure_norm, bodiesNorm(p, gatherBodies(p, rhs_fields.bodies)));
+  double rhs_norm = std::hypot(rhs.velocity_norm, rhs.pressure_norm, bodiesNorm(p, p.coordinates.gatherForces(rhs_fields.bodies)));
   if (!std::isfinite(rhs_norm)) return m.notConverged(report, "what acts on liquid and bodies is too large a number");
   const Eigen::Index count = contacts.count();
 
@@ -128,7 +128,7 @@ CoupledReport FastSolver::solveWithContacts(StepVector& rhs_fields, const Contac
     guess.setResponse(system.estimatedResponse());
     // One cycle on the whole residual says roughly how the bodies would move without contact.
     system.setBorder(makeBorder(contacts, openStates(contacts)), Eigen::VectorXd());
-    guess.startFrom(wet ? system.improvedTwists(rhs, x) : system.moveDry(rhs, x), wet, report);
+    guess.startFrom(wet ? system.improvedMotion(rhs, x) : system.moveDry(rhs, x), wet, report);
     // What presses the contacts may be all that there is.
     rhs_norm = std::max(rhs_norm, bodiesNorm(p, guess.push()));
   }
@@ -154,7 +154,7 @@ CoupledReport FastSolver::solveWithContacts(StepVector& rhs_fields, const Contac
     const ContactStates states = given ? openStates(contacts) : guess.states();
     ContactBorder border;
     m.appendBorder(contacts, states, guess.compliance(), r, border, rhs, x);
-    if (given) system.setForces(gatherBodies(p, rhs_fields.bodies) + guess.push(), rhs);
+    if (given) system.setForces(p.coordinates.gatherForces(rhs_fields.bodies) + guess.push(), rhs);
     if (given && !wet) system.moveDry(rhs, x);
     // Given impulses are judged by the velocities that come of them, which the solve's error must not drown.
     if (given) closer = std::pow(kTightening, round - on_estimate + 1);
@@ -178,13 +178,13 @@ CoupledReport FastSolver::solveWithContacts(StepVector& rhs_fields, const Contac
       lawful = true;
       break;
     }
-    const Eigen::VectorXd twists = system.twists(x);
+    const Eigen::VectorXd motion = system.motionOf(x);
     if (!given) {
       const auto y = Eigen::Map<const Eigen::VectorXd>(x.rest.data() + system.bodySize(), border.count());
       guess.setImpulses(impulses(contacts, states, border, y));
-      guess.learnFrom(twists, std::max(options.tolerance, last.residual / rhs_norm));
+      guess.learnFrom(motion, std::max(options.tolerance, last.residual / rhs_norm));
     }
-    const ContactGuess::Change change = guess.proceedFrom(twists, rough, report);
+    const ContactGuess::Change change = guess.proceedFrom(motion, rough, report);
     lawful = change.settled && !rough;
     // The border is Newton's method.
     expected = change.settled ? 0.0 : change.relative * change.relative;

@@ -28,12 +28,8 @@ CoupledReport solveIteratively(StepSolver& solver, const StepProblem& problem, c
                                const ContactRows& contacts, const CoupledOptions& options, StepVector& x,
                                Eigen::VectorXd& r) {
   const Eigen::Index n = problem.bodyUnknowns();
-  Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
-  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n, n);
-  for (std::size_t b = 0; b < problem.free.size(); ++b) {
-    M.block<6, 6>(6 * b, 6 * b) = problem.inertia[b];
-    K.block<6, 6>(6 * b, 6 * b) = problem.inertia[b].inverse();
-  }
+  const Eigen::MatrixXd M = problem.bodyInertia(), K = M.inverse();
+  const BodyCoordinates& unknowns = problem.coordinates;
   Eigen::VectorXd compliance;
   const Eigen::MatrixXd D = contactResponse(contacts, K, compliance);
   if (r.size() != 3 * contacts.count()) r = Eigen::VectorXd::Zero(3 * contacts.count());
@@ -47,7 +43,7 @@ CoupledReport solveIteratively(StepSolver& solver, const StepProblem& problem, c
   Eigen::VectorXd push = contacts.J.transpose() * r;
   for (int it = 0; it < kMaximumAlternations; ++it) {
     // Pressure, viscosity and bodies.
-    scatterBodies(problem, gatherBodies(problem, rhs.bodies) + push, pushed.bodies);
+    unknowns.scatterForces(unknowns.gatherForces(rhs.bodies) + push, pushed.bodies);
     const CoupledReport liquid = solver.solve(pushed, options, x);
     report.iterations += liquid.iterations;
     report.solves += liquid.solves;
@@ -58,7 +54,7 @@ CoupledReport solveIteratively(StepSolver& solver, const StepProblem& problem, c
       return report;
     }
     // Contact alone: what the bodies would do under the liquid's forces just found.
-    const Eigen::VectorXd v = gatherBodies(problem, x.bodies);
+    const Eigen::VectorXd v = unknowns.gatherMotion(x.bodies);
     const Eigen::VectorXd w = contacts.J * (v - K * push) + contacts.bias;
     const FrictionReport friction = solveFrictionalContact({D, w, contacts.friction}, small_tolerance, r);
     report.friction_iterations += 1;

@@ -51,17 +51,24 @@ void PackedSystem::set(StepProblem& problem) {
   flux_weight_ = std::max(1.0, 2.0 * p.viscous_number);
   preconditioner_.set(p, faces_single_, cells_single_, transfer_, impulse_);
   problem.coarse.release();
-  scale_.resize(bodySize());
-  for (std::size_t i = 0; i < p.free.size(); ++i) scale_.segment<6>(6 * i) = p.twist_scale[i];
-  columns_.set(p, scale_);
+  scale_ = p.unknown_scale;
+  Eigen::VectorXd twist_scale(6 * static_cast<Eigen::Index>(p.free.size()));
+  for (std::size_t i = 0; i < p.free.size(); ++i) twist_scale.segment<6>(6 * i) = p.twist_scale[i];
+  twists_of_ = p.coordinates.S();
+  for (Eigen::Index j = 0; j < twists_of_.outerSize(); ++j) {
+    for (Eigen::SparseMatrix<double>::InnerIterator it(twists_of_, j); it; ++it) {
+      it.valueRef() *= twist_scale[it.row()] / scale_[j];
+    }
+  }
+  columns_.set(p, twist_scale);
   columns_single_.convert(columns_);
-  bodies_ = Eigen::MatrixXd::Zero(bodySize(), bodySize());
-  for (std::size_t i = 0; i < p.free.size(); ++i) bodies_.block<6, 6>(6 * i, 6 * i) = p.inertia[i];
+  bodies_ = p.bodyInertia();
   bodies_ = (scale_.cwiseInverse().asDiagonal() * bodies_ * scale_.cwiseInverse().asDiagonal()).eval();
   S_ = bodies_;
   iterations_ = 0;
   decades_ = 0.0;
-  bodies_ += columns_.ownResistance();
+  own_resistance_ = twists_of_.transpose() * columns_.ownResistance() * twists_of_;
+  bodies_ += own_resistance_;
   border_compliance_.resize(0);  // that of the last step: apply() has none now
   together_.set(p, scale_, [this](auto& x, auto& y) { apply(faces_, cells_, columns_, x, y); });
 }
@@ -73,7 +80,7 @@ void PackedSystem::updateSchur() {
                     resistance_number_ <= kStaleNumber * p.viscous_number && !stale_;
   if (!same) {
     resistance_ =
-        scale_.asDiagonal() * BodySchur::resistance(lattice(), columns_single_, preconditioner_) * scale_.asDiagonal();
+        scale_.asDiagonal() * BodySchur::resistance(lattice(), columns_single_, twists_of_, preconditioner_) * scale_.asDiagonal();
     resistance_of_ = p.free;
     resistance_number_ = p.viscous_number;
     fresh_cost_ = lost_ = 0.0;
@@ -81,17 +88,25 @@ void PackedSystem::updateSchur() {
   }
   const Eigen::VectorXd weight = resistanceWeight();
   S_ = weight.asDiagonal() * resistance_ * weight.asDiagonal();
-  S_ += bodies_ - columns_.ownResistance();
+  S_ += bodies_ - own_resistance_;
   S_inverse_ = S_.ldlt().solve(Eigen::MatrixXd::Identity(bodySize(), bodySize()));
 }
 
 Eigen::VectorXd PackedSystem::resistanceWeight() const {
   const StepProblem& p = *problem_;
   Eigen::VectorXd weight = scale_.cwiseInverse();
-  for (std::size_t i = 0; i < p.free.size(); ++i) {
+  for (const BodyCoordinates::Assembly& assembly : p.coordinates.assemblies()) {
+    double radius = 0.0;
+    bool touched = false;
+    for (const int b : assembly.bodies) {
+      const int i = p.free_index[b];
+      if (i < 0) continue;
+      radius = std::max(radius, p.radius[i]);
+      touched = touched || p.touched[i];
+    }
     // A body that has left the liquid is as light as it is.
-    weight.segment<6>(6 * i) *=
-        p.touched[i] ? std::sqrt(resistanceRatio(p.radius[i], resistance_number_, p.viscous_number)) : 0.0;
+    weight.segment(assembly.first, assembly.count) *=
+        touched ? std::sqrt(resistanceRatio(radius, resistance_number_, p.viscous_number)) : 0.0;
   }
   return weight;
 }
@@ -104,7 +119,7 @@ void PackedSystem::adoptResponse(const Eigen::MatrixXd& K) {
   S_ = factor.solve(Eigen::MatrixXd::Identity(bodySize(), bodySize()));
   Eigen::VectorXd weight = resistanceWeight();
   for (double& w : weight) w = w > 0.0 ? 1.0 / w : 0.0;
-  resistance_ = weight.asDiagonal() * (S_ - bodies_ + columns_.ownResistance()) * weight.asDiagonal();
+  resistance_ = weight.asDiagonal() * (S_ - bodies_ + own_resistance_) * weight.asDiagonal();
   fresh_cost_ = lost_ = 0.0;
   stale_ = false;
 }
@@ -119,7 +134,7 @@ void PackedSystem::judgeAge() {
 
 BorderedVector PackedSystem::forces(StepVector& v) const {
   BorderedVector out{&v.velocity, &v.pressure, std::vector<double>(bodySize())};
-  setForces(gatherBodies(*problem_, v.bodies), out);
+  setForces(problem_->coordinates.gatherForces(v.bodies), out);
   double square = 0.0;
   for (const auto& field : v.velocity) square += dot(field, field);
   out.velocity_norm = std::sqrt(square);
@@ -129,16 +144,17 @@ BorderedVector PackedSystem::forces(StepVector& v) const {
 
 BorderedVector PackedSystem::motion(StepVector& v) const {
   BorderedVector out{&v.velocity, &v.pressure, std::vector<double>(bodySize())};
-  Eigen::Map<Eigen::VectorXd>(out.rest.data(), bodySize()) = gatherBodies(*problem_, v.bodies).cwiseProduct(scale_);
+  Eigen::Map<Eigen::VectorXd>(out.rest.data(), bodySize()) = 
+      problem_->coordinates.gatherMotion(v.bodies).cwiseProduct(scale_);
   return out;
 }
 
 void PackedSystem::finish(const BorderedVector& x, StepVector& v) const {
   for (double* field : x.fields()) clearHalo(lattice(), field);
-  scatterBodies(*problem_, twists(x), v.bodies);
+  problem_->coordinates.scatterMotion(motionOf(x), v.bodies);
 }
 
-Eigen::VectorXd PackedSystem::twists(const BorderedVector& x) const {
+Eigen::VectorXd PackedSystem::motionOf(const BorderedVector& x) const {
   return Eigen::Map<const Eigen::VectorXd>(x.rest.data(), bodySize()).cwiseQuotient(scale_);
 }
 
@@ -178,7 +194,7 @@ void PackedSystem::apply(const FaceBlocks<Real>& faces, const CellBlocks<Real>& 
   applyMomentum(l, faces, problem_->coefficients.viscous, U, static_cast<const Real*>(from[3]),
                 Faces<Real>{to[0], to[1], to[2]});
   applyDivergence(l, cells, U, Real(0), static_cast<const Real*>(nullptr), to[3]);
-  if (bodySize() > 0) columns.addMotion(x.data() + liquid, to);
+  if (bodySize() > 0) columns.addMotion(columnMotion(x.data() + liquid).data(), to);
   if (flux_weight_ != 1.0) {
     const Real weight = static_cast<Real>(flux_weight_);
     Real* flux = to[3];
@@ -190,13 +206,24 @@ void PackedSystem::apply(const FaceBlocks<Real>& faces, const CellBlocks<Real>& 
 }
 
 template <class Real>
+std::vector<Real> PackedSystem::columnMotion(const Real* rest) const {
+  std::vector<Real> out(twists_of_.rows(), Real(0));
+  for (Eigen::Index j = 0; j < twists_of_.outerSize(); ++j) {
+    for (Eigen::SparseMatrix<double>::InnerIterator it(twists_of_, j); it; ++it) {
+      out[it.row()] += static_cast<Real>(it.value()) * rest[j];
+    }
+  }
+  return out;
+}
+
+template <class Real>
 void PackedSystem::applyBodies(const BodyColumns<Real>& columns, const LiquidFields<const Real>& fields,
                                const Real* rest, Real* out) const {
   using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
   const Eigen::Index n = bodySize(), k = border_compliance_.size();
   if (n == 0) return;
   const Eigen::VectorXd v = Eigen::Map<const Vector>(rest, n).template cast<double>();
-  Eigen::VectorXd force = bodies_ * v + columns.forces(fields);
+  Eigen::VectorXd force = bodies_ * v + columnForces(columns, fields);
   if (k > 0) {
     const Eigen::VectorXd r = Eigen::Map<const Vector>(rest + n, k).template cast<double>();
     force -= border_C_ * r;
@@ -210,7 +237,7 @@ void PackedSystem::residual(const BorderedVector& rhs, const SplitVector& x, std
   const LiquidFields<double> b = rhs.fields();
   for (int field = 0; field < 4; ++field) fillHalo(l, x.pieces[field]);
   // What the bodies' motion does is small where it meets what is left of the rest: both in double precision.
-  if (bodySize() > 0) columns_.takeMotion(x.pieces[4], b, before_);
+  if (bodySize() > 0) columns_.takeMotion(columnMotion<double>(x.pieces[4]).data(), b, before_);
   const LiquidFields<float> to = packedFields(l, r.data());
   const Faces<const double> U{x.pieces[0], x.pieces[1], x.pieces[2]};
   momentumResidual(l, faces_, problem_->coefficients.viscous, {b[0], b[1], b[2]}, U, x.pieces[3],
@@ -255,7 +282,7 @@ void PackedSystem::preconditionBodies(const std::vector<float>& from, std::vecto
   float* out = to.data() + liquidSize();
   // Bodies feel what the liquid has just been given.
   Eigen::VectorXd force = Eigen::Map<const Eigen::VectorXf>(r, n).cast<double>() -
-                          columns_single_.forces(packedFields<const float>(lattice(), to.data()));
+                          columnForces(columns_single_, packedFields<const float>(lattice(), to.data()));
   if (k > 0) {
     const Eigen::VectorXd free = S_inverse_ * force;
     const Eigen::VectorXd y =
@@ -304,24 +331,25 @@ KrylovMaps PackedSystem::maps(const BorderedVector& rhs) {
 
 void PackedSystem::moveUntouched(const BorderedVector& rhs, const ContactRows& contacts, BorderedVector& x) const {
   const StepProblem& p = *problem_;
-  for (std::size_t i = 0; i < p.free.size(); ++i) {
-    const auto at = static_cast<Eigen::Index>(6 * i);
-    if (p.touched[i] || !contacts.J.middleCols<6>(at).isZero(0.0)) continue;
-    const Eigen::Map<const Vector6d> force(rhs.rest.data() + at);
-    Eigen::Map<Vector6d>(x.rest.data() + at) = S_inverse_.block<6, 6>(at, at) * force;
+  for (const auto& [first, count, bodies, adrift] : p.coordinates.assemblies()) {
+    const bool touched = std::any_of(bodies.begin(), bodies.end(),
+                                     [&](int b) { return p.free_index[b] >= 0 && p.touched[p.free_index[b]]; });
+    if (touched || !contacts.J.middleCols(first, count).isZero(0.0)) continue;
+    const Eigen::Map<const Eigen::VectorXd> force(rhs.rest.data() + first, count);
+    Eigen::Map<Eigen::VectorXd>(x.rest.data() + first, count) = S_inverse_.block(first, first, count, count) * force;
   }
 }
 
 Eigen::VectorXd PackedSystem::moveDry(const BorderedVector& rhs, BorderedVector& x) const {
   Eigen::Map<Eigen::VectorXd>(x.rest.data(), bodySize()) =
       S_inverse_ * Eigen::Map<const Eigen::VectorXd>(rhs.rest.data(), bodySize());
-  return twists(x);
+  return motionOf(x);
 }
 
-Eigen::VectorXd PackedSystem::improvedTwists(const BorderedVector& rhs, BorderedVector& x) {
+Eigen::VectorXd PackedSystem::improvedMotion(const BorderedVector& rhs, BorderedVector& x) {
   const std::vector<float>& z = krylov_.firstDirection(maps(rhs), split(x));
   const Eigen::VectorXf change = Eigen::Map<const Eigen::VectorXf>(z.data() + liquidSize(), bodySize());
-  return twists(x) + change.cast<double>().cwiseQuotient(scale_);
+  return motionOf(x) + change.cast<double>().cwiseQuotient(scale_);
 }
 
 KrylovReport PackedSystem::solve(const BorderedVector& rhs, BorderedVector& x, const Goal& goal,

@@ -1,6 +1,6 @@
 #pragma once
 // The step's linear system as `fast` solves it: all unknowns in one vector - U by components, p^, lattice.size each,
-// the twists of the free bodies times their scale, the impulses of the contacts in the border - and flexible GMRES with
+// the unknowns of the bodies' motion times their scale, the impulses of the contacts in the border - and flexible GMRES with
 // its preconditioner. The right side and the solution stay in the fields that hold them (BorderedVector); the basis of
 // GMRES is packed. The preconditioner: the liquid's (liquid_preconditioner.h), then an approximate Schur complement S
 // of the bodies, their inertia and their resistance to motion in this liquid, bordered by the contacts. S ages slowly
@@ -52,11 +52,11 @@ class PackedSystem {
   // Completes v, over whose fields x is, from its rest.
   void finish(const BorderedVector& x, StepVector& v) const;
 
-  // Twists of the free bodies in m/s and rad/s; what is written for forces on them.
-  Eigen::VectorXd twists(const BorderedVector& x) const;
+  // Motion of the bodies in m/s and rad/s, by their unknowns; what is written for forces on them.
+  Eigen::VectorXd motionOf(const BorderedVector& x) const;
   void setForces(const Eigen::VectorXd& forces, BorderedVector& rhs) const;
 
-  // Response of the twists to impulses as S has it.
+  // Response of that motion to impulses as S has it.
   Eigen::MatrixXd estimatedResponse() const;
   // S from a response that was solved for; it ages from then on.
   void adoptResponse(const Eigen::MatrixXd& K);
@@ -67,17 +67,17 @@ class PackedSystem {
   // What bodies do that neither liquid nor another body touches, for which S is exact: the residual of all would hide
   // theirs.
   void moveUntouched(const BorderedVector& rhs, const ContactRows& contacts, BorderedVector& x) const;
-  // The motion of bodies that no liquid touches, given the forces on them: S is exact. Returns the twists.
+  // The motion of bodies that no liquid touches, given the forces on them: S is exact. Returns it.
   Eigen::VectorXd moveDry(const BorderedVector& rhs, BorderedVector& x) const;
-  // Twists of x after one cycle of the preconditioner on its residual. The right side is left as it was.
-  Eigen::VectorXd improvedTwists(const BorderedVector& rhs, BorderedVector& x);
+  // Motion of the bodies in x after one cycle of the preconditioner on its residual. The right side is left as it was.
+  Eigen::VectorXd improvedMotion(const BorderedVector& rhs, BorderedVector& x);
   // For the residual. See KrylovOptions.
   struct Goal {
     double residual = 0.0;
     double part = 0.0;  // or so much of what it was at first
     double of_guess = std::numeric_limits<double>::infinity();
   };
-  // past: of the call before, improvedTwists() or solve(); nothing but the border and forces on bodies may have changed
+  // past: of the call before, improvedMotion() or solve(); nothing but the border and forces on bodies may have changed
   // since. The right side is left as it was.
   KrylovReport solve(const BorderedVector& rhs, BorderedVector& x, const Goal& goal, const CoupledOptions& options,
                      CoupledReport& report, KrylovPast past = KrylovPast::kNothing);
@@ -92,6 +92,15 @@ class PackedSystem {
   template <class Real>
   void apply(const FaceBlocks<Real>& faces, const CellBlocks<Real>& cells, const BodyColumns<Real>& columns,
              std::vector<Real>& x, std::vector<Real>& y) const;
+  // Motion of the bodies, by their unknowns, in the units of the columns.
+  template <class Real>
+  std::vector<Real> columnMotion(const Real* rest) const;
+  Eigen::VectorXd columnForces(const BodyColumns<double>& columns, const LiquidFields<const double>& fields) const {
+    return twists_of_.transpose() * columns.forces(fields);
+  }
+  Eigen::VectorXd columnForces(const BodyColumns<float>& columns, const LiquidFields<const float>& fields) const {
+    return twists_of_.transpose() * columns.forces(fields);
+  }
   // Its rows of the bodies and the border, of x with the liquid's fields and the rest apart.
   template <class Real>
   void applyBodies(const BodyColumns<Real>& columns, const LiquidFields<const Real>& fields, const Real* rest,
@@ -122,9 +131,11 @@ class PackedSystem {
   Fgmres krylov_;
   double flux_weight_ = 1.0;
   LiquidPlaces<double> before_;  // of the right side, where the bodies' motion is taken from it
-  Eigen::VectorXd scale_;       // unknown = scale * twist
-  Eigen::MatrixXd bodies_;      // A_vv with inertia
-  Eigen::MatrixXd resistance_;  // of the free bodies, physical units
+  Eigen::VectorXd scale_;       // unknown = scale * velocity
+  Eigen::SparseMatrix<double> twists_of_;  // from the unknowns to the twists, in the units of the columns
+  Eigen::MatrixXd bodies_;      // A_vv of the unknowns with inertia
+  Eigen::MatrixXd own_resistance_;  // and without
+  Eigen::MatrixXd resistance_;  // of the bodies, physical units
   std::vector<int> resistance_of_;
   double resistance_number_ = -1.0;
   // Of the first solve since set(): later ones have fewer decades to go.

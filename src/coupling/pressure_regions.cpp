@@ -23,11 +23,20 @@ long cellsAtWalls(const Lattice& l, std::ptrdiff_t begin, std::ptrdiff_t end) {
   return (first[0] == 0 ? 1 : 0) + (first[0] + (end - begin) == l.n[0] ? 1 : 0);
 }
 
-void findDrifts(const Lattice& l, const BodyRows& rows, const std::vector<char>& moves, const ConnectedRuns& runs,
+void findDrifts(const Lattice& l, const BodyRows& rows, const BodyCoordinates& unknowns, const ConnectedRuns& runs,
                 const std::vector<int>& id_of, std::vector<PressureRegion>& regions) {
   // Regions, and behind them free bodies, by what they are joined to.
   const auto count = static_cast<int>(regions.size());
-  DisjointSets joined(count + static_cast<int>(moves.size()));
+  const auto bodies = static_cast<int>(unknowns.bodies());
+  DisjointSets joined(count + bodies);
+  std::vector<char> moves(bodies, 0);
+  for (const BodyCoordinates::Assembly& assembly : unknowns.assemblies()) {
+    if (!assembly.adrift) continue;
+    for (const int b : assembly.bodies) {
+      moves[b] = 1;
+      joined.unite(count + assembly.bodies.front(), count + b);
+    }
+  }
   std::vector<long> cells(joined.count(), 0), held(joined.count(), 0);
   for (const BodyRow& row : rows.divergence) {
     const int run = runs.of(row.sample);
@@ -63,7 +72,7 @@ void findDrifts(const Lattice& l, const BodyRows& rows, const std::vector<char>&
 }  // namespace
 
 std::vector<PressureRegion> findPressureRegions(const StaggeredCoefficients<double>& c, const BodyRows& rows,
-                                                const std::vector<char>& moves) {
+                                                const BodyCoordinates& unknowns) {
   ConnectedRuns runs(c.lattice, c.has_pressure, {c.open(0), c.open(1), c.open(2)});
   std::vector<int> id_of;
   std::vector<PressureRegion> regions(runs.numberRegions(id_of));
@@ -71,7 +80,7 @@ std::vector<PressureRegion> findPressureRegions(const StaggeredCoefficients<doub
   for (int run = 0; run < runs.count(); ++run) {
     if (runs.openToOthers(run)) regions[id_of[run]].sealed = false;
   }
-  findDrifts(c.lattice, rows, moves, runs, id_of, regions);
+  findDrifts(c.lattice, rows, unknowns, runs, id_of, regions);
   const auto wanted = [](const PressureRegion& region) { return region.sealed || region.drift >= 0; };
   if (std::any_of(regions.begin(), regions.end(), wanted)) {
     runs.forEachRun([&](int run, std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -82,18 +91,30 @@ std::vector<PressureRegion> findPressureRegions(const StaggeredCoefficients<doub
     });
   }
   // The constant of a sealed region pushes a body by the sum of its rows there.
-  std::map<std::pair<int, int>, std::pair<Vector6d, double>> push;  // region, body -> sum, size of its terms
+  struct Push {
+    std::vector<Vector6d> sum;  // of each body
+    std::vector<double> size;   // of its terms
+  };
+  const Push none{std::vector<Vector6d>(unknowns.bodies(), Vector6d::Zero()),
+                  std::vector<double>(unknowns.bodies(), 0.0)};
+  std::map<int, Push> push;  // of regions
   for (const BodyRow& row : rows.divergence) {
     const int run = runs.of(row.sample);
     const int id = run < 0 ? -1 : id_of[run];
-    if (id < 0 || !regions[id].sealed || !moves[row.body]) continue;
-    auto& entry = push.try_emplace({id, row.body}, Vector6d::Zero(), 0.0).first->second;
-    entry.first += row.coefficient;
-    entry.second += row.coefficient.cwiseAbs().maxCoeff();
+    if (id < 0 || !regions[id].sealed) continue;
+    Push& entry = push.try_emplace(id, none).first->second;
+    entry.sum[row.body] += row.coefficient;
+    entry.size[row.body] += row.coefficient.cwiseAbs().maxCoeff();
   }
   for (auto& region : regions) region.null_mode = region.sealed;
-  for (const auto& [key, entry] : push) {
-    if (entry.first.cwiseAbs().maxCoeff() > 1e-9 * entry.second) regions[key.first].null_mode = false;
+  for (const auto& [id, entry] : push) {
+    const Eigen::VectorXd felt = unknowns.gatherForces(entry.sum);
+    for (const BodyCoordinates::Assembly& assembly : unknowns.assemblies()) {
+      double size = 0.0;
+      for (const int b : assembly.bodies) size += entry.size[b];
+      const double most = felt.segment(assembly.first, assembly.count).cwiseAbs().maxCoeff();
+      if (most > 1e-9 * size) regions[id].null_mode = false;
+    }
   }
   return regions;
 }

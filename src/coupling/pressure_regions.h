@@ -6,6 +6,7 @@
 #include <numeric>
 #include <vector>
 
+#include "coupling/body_coordinates.h"
 #include "coupling/body_rows.h"
 
 namespace monolith {
@@ -40,8 +41,8 @@ struct PressureRegion {
   }
 };
 
-// `moves[b]`: body b's twist is an unknown.
+// `unknowns`: of the bodies' motion.
 std::vector<PressureRegion> findPressureRegions(const StaggeredCoefficients<double>& coefficients,
-                                                const BodyRows& rows, const std::vector<char>& moves);
+                                                const BodyRows& rows, const BodyCoordinates& unknowns);
 
 }  // namespace monolith

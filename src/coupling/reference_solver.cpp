@@ -45,7 +45,7 @@ struct ReferenceSolver::Impl {
   StepProblem* problem = nullptr;
   std::unique_ptr<StressSystem> system;
   Eigen::IncompleteCholesky<double> cholesky;
-  Eigen::MatrixXd inverse_inertia;  // M_S^-1, block diagonal
+  Eigen::MatrixXd inverse_inertia;  // M_S^-1, of the unknowns
   Eigen::MatrixXd response;         // of the free bodies to impulses on them, the liquid implicit; made when needed
 
   // Unknowns (x, y) with impulses y >= 0 of Jacobian Jc; forces f_v on the bodies, velocities `bias` of the contacts.
@@ -74,7 +74,7 @@ double ReferenceSolver::Impl::residual(const StepVector& rhs, const Eigen::Vecto
                                        const StepVector& x) const {
   StepVector r;
   stepResidual(*problem, rhs, x, r);
-  scatterBodies(*problem, gatherBodies(*problem, r.bodies) + contact_forces, r.bodies);
+  problem->coordinates.scatterForces(problem->coordinates.gatherForces(r.bodies) + contact_forces, r.bodies);
   return relativeNorm(*problem, r, rhs);
 }
 
@@ -110,10 +110,10 @@ CoupledReport ReferenceSolver::Impl::minimise(const StepVector& rhs, const Eigen
     report.iterations += done.iterations;
     const Eigen::VectorXd contact_forces = Jc.transpose() * unknowns.tail(k);
     const Eigen::VectorXd v = inverse_inertia * (body_forces - s.J.transpose() * unknowns.head(n) + contact_forces);
-    scatterBodies(*problem, v, x.bodies);
+    problem->coordinates.scatterMotion(v, x.bodies);
     s.velocityAndPressure(unknowns.head(n), f, x);
     StepVector forced = rhs;
-    scatterBodies(*problem, body_forces, forced.bodies);
+    problem->coordinates.scatterForces(body_forces, forced.bodies);
     report.residual = residual(forced, contact_forces, x);
     if (done.converged && report.residual <= options.tolerance) {
       report.status = SolveStatus::kConverged;
@@ -143,7 +143,7 @@ CoupledReport ReferenceSolver::Impl::computeResponse() {
   options.tolerance = kResponseTolerance;
   for (Eigen::Index i = 0; i < n; ++i) {
     const Eigen::VectorXd impulse = Eigen::VectorXd::Unit(n, i);
-    scatterBodies(*problem, impulse, rhs.bodies);
+    problem->coordinates.scatterForces(impulse, rhs.bodies);
     Eigen::VectorXd unknowns = Eigen::VectorXd::Zero(system->unknowns());
     const CoupledReport column =
         minimise(rhs, impulse, Eigen::MatrixXd(0, n), Eigen::VectorXd(0), options, unknowns, x);
@@ -154,7 +154,7 @@ CoupledReport ReferenceSolver::Impl::computeResponse() {
       report.message = column.message;
       return report;
     }
-    K.col(i) = gatherBodies(*problem, x.bodies);
+    K.col(i) = problem->coordinates.gatherMotion(x.bodies);
   }
   response = 0.5 * (K + K.transpose());
   return report;
@@ -176,7 +176,7 @@ CoupledReport ReferenceSolver::Impl::settle(const StepVector& rhs, const Eigen::
     report.status = part.status;
     report.message = part.message;
     if (part.status != SolveStatus::kConverged) return report;
-    const Eigen::VectorXd w = Jc * gatherBodies(*problem, x.bodies) + bias + compliance.cwiseProduct(r);
+    const Eigen::VectorXd w = Jc * problem->coordinates.gatherMotion(x.bodies) + bias + compliance.cwiseProduct(r);
     Eigen::VectorXd next = r;
     const bool solved = small(w, next);
     // Of redundant contacts only what they do to the bodies is determined.
@@ -224,11 +224,7 @@ void ReferenceSolver::prepare(StepProblem& problem) {
   impl_->system = std::make_unique<StressSystem>(problem);
   if (impl_->system->unknowns() > 0) impl_->cholesky.compute(impl_->system->A);
   impl_->response.resize(0, 0);
-  const Eigen::Index n = problem.bodyUnknowns();
-  impl_->inverse_inertia = Eigen::MatrixXd::Zero(n, n);
-  for (std::size_t b = 0; b < problem.free.size(); ++b) {
-    impl_->inverse_inertia.block<6, 6>(6 * b, 6 * b) = problem.inertia[b].inverse();
-  }
+  impl_->inverse_inertia = problem.bodyInertia().inverse();
 }
 
 CoupledReport ReferenceSolver::solve(StepVector& rhs, const CoupledOptions& options, StepVector& x) {
@@ -245,10 +241,10 @@ CoupledReport ReferenceSolver::solveWithContacts(StepVector& rhs, const ContactR
   const Eigen::Index n = s.unknowns(), m = contacts.count();
   if (r.size() != 3 * m) r = Eigen::VectorXd::Zero(3 * m);
   const Eigen::MatrixXd Jn = contacts.J.topRows(m), Jt = contacts.J.bottomRows(2 * m);
-  const Eigen::VectorXd forces = gatherBodies(*p.problem, rhs.bodies);
+  const Eigen::VectorXd forces = p.problem->coordinates.gatherForces(rhs.bodies);
   const bool frictional = m > 0 && contacts.friction.maxCoeff() > 0.0;
   if (!frictional) r.tail(2 * m).setZero();
-  const Eigen::VectorXd start = s.unknownsOf(x, gatherBodies(*p.problem, x.bodies));
+  const Eigen::VectorXd start = s.unknownsOf(x, p.problem->coordinates.gatherMotion(x.bodies));
 
   CoupledReport report;
   if (frictional) {

@@ -62,15 +62,15 @@ RigidModes::Drift RigidModes::makeDrift(int number, const std::vector<std::int32
   for (const BodyRow& row : p.rows.divergence) {
     if (numbers[row.sample] == number) in_it[row.body] = 1;
   }
-  for (std::size_t i = 0; i < p.free.size(); ++i) {
-    if (!in_it[p.free[i]]) continue;
-    // v = v_c + w x (x - c)/size, and the body turns with w/size.
+  for (const BodyCoordinates::Assembly& assembly : p.coordinates.assemblies()) {
+    const bool inside = std::any_of(assembly.bodies.begin(), assembly.bodies.end(), [&](int b) { return in_it[b]; });
+    if (!inside || !assembly.adrift) continue;
+    // Joints at rest, and of the root v = v_c + w x (x - c)/size, and the body turns with w/size.
     Matrix6d twist = Matrix6d::Identity();
-    const Eigen::Vector3d x = ((*p.bodies)[p.free[i]].p_WBcm - centre) / size;
+    const Eigen::Vector3d x = ((*p.bodies)[assembly.bodies.front()].p_WBcm - centre) / size;
     for (int q = 0; q < 3; ++q) twist.block<3, 1>(0, 3 + q) = Eigen::Vector3d::Unit(q).cross(x);
     twist.bottomRightCorner<3, 3>() /= size;
-    const auto first = static_cast<Eigen::Index>(6 * i);
-    out.bodies.emplace_back(first, scale.segment<6>(first).asDiagonal() * twist);
+    out.bodies.emplace_back(assembly.first, scale.segment<6>(assembly.first).asDiagonal() * twist);
   }
   return out;
 }

@@ -8,6 +8,7 @@
 #include "coupling/fraction_coefficients.h"
 #include "coupling/row_kinds.h"
 #include "coupling/sticking_liquid.h"
+#include "rigid/articulation.h"
 #include "solve/blocked_sum.h"
 #include "solve/velocity_multigrid.h"
 #include "solve/whole_fields.h"
@@ -49,7 +50,6 @@ void StepProblem::assemble(SolidFractions& solids, const std::vector<RigidBody>&
   if (!sticks) dropIdleTurns(all_bodies, rows.divergence);
   op_.set(&coefficients, &rows);
 
-  std::vector<char> moves(all_bodies.size(), 0);
   const std::vector<char> wet = rows.touched(all_bodies.size());
   free.clear();
   touched.clear();
@@ -59,7 +59,6 @@ void StepProblem::assemble(SolidFractions& solids, const std::vector<RigidBody>&
   inertia.clear();
   for (std::size_t b = 0; b < all_bodies.size(); ++b) {
     if (all_bodies[b].motion != BodyMotion::kFree) continue;
-    moves[b] = 1;
     free_index[b] = static_cast<int>(free.size());
     free.push_back(static_cast<int>(b));
     touched.push_back(wet[b]);
@@ -77,7 +76,54 @@ void StepProblem::assemble(SolidFractions& solids, const std::vector<RigidBody>&
     for (int d = 0; d < 6; ++d) scale[d] = std::sqrt(M(d, d) + displaced * (d < 3 ? 1.0 : 0.4 * radius2));
     twist_scale.push_back(scale);
   }
-  regions = findPressureRegions(coefficients, rows, moves);
+  coordinates.set(all_bodies);
+  setUnknownScales();
+  regions = findPressureRegions(coefficients, rows, coordinates);
+}
+
+// Of a twist's component that of the twist, of a joint what it moves and what resists it.
+void StepProblem::setUnknownScales() {
+  unknown_scale.resize(coordinates.size());
+  for (const BodyCoordinates::Assembly& assembly : coordinates.assemblies()) {
+    for (const int b : assembly.bodies) {
+      const Eigen::Index joint = coordinates.ofJoint(b);
+      if (joint < 0) {
+        if (free_index[b] >= 0 && !(*bodies)[b].joint) unknown_scale.segment<6>(assembly.first) = twist_scale[free_index[b]];
+        continue;
+      }
+      double square = joint_resistance.empty() ? 0.0 : joint_resistance[b] / impulse_scale;
+      for (Eigen::SparseMatrix<double>::InnerIterator it(coordinates.S(), joint); it; ++it) {
+        const double part = it.value() * twist_scale[it.row() / 6][it.row() % 6];
+        square += part * part;
+      }
+      unknown_scale[joint] = std::sqrt(square);
+    }
+  }
+}
+
+Eigen::MatrixXd StepProblem::bodyInertia() const {
+  const auto size = static_cast<Eigen::Index>(6 * free.size());
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(size, size);
+  for (std::size_t i = 0; i < free.size(); ++i) M.block<6, 6>(6 * i, 6 * i) = inertia[i];
+  const Eigen::MatrixXd moved = M * coordinates.S();
+  Eigen::MatrixXd out = coordinates.S().transpose() * moved;
+  for (std::size_t b = 0; b < joint_resistance.size(); ++b) {
+    const Eigen::Index joint = coordinates.ofJoint(b);
+    if (joint >= 0) out(joint, joint) += joint_resistance[b] / impulse_scale;
+  }
+  return out;
+}
+
+void StepProblem::addJointResistance(const std::vector<Vector6d>& twists, std::vector<Vector6d>& impulses) const {
+  for (std::size_t b = 0; b < joint_resistance.size(); ++b) {
+    if (joint_resistance[b] == 0.0 || coordinates.ofJoint(b) < 0) continue;
+    const auto parent = static_cast<std::size_t>((*bodies)[b].joint->parent);
+    const Vector6d row = jointRow((*bodies)[b]), reaction = carryMatrix(*bodies, b).transpose() * row;
+    const double velocity = row.dot(twists[b]) - (free_index[parent] < 0 ? 0.0 : reaction.dot(twists[parent]));
+    const double impulse = joint_resistance[b] / impulse_scale * velocity;
+    impulses[b] += impulse * row;
+    if (free_index[parent] >= 0) impulses[parent] -= impulse * reaction;
+  }
 }
 
 void StepProblem::forget() {
@@ -169,7 +215,7 @@ Vector6d StepProblem::enclosedImpulse(const EnclosedWeight& weight, const Eigen:
 }
 
 std::string StepProblem::rightSide(FaceField<double> free_velocity, const std::vector<Vector6d>& free_twists,
-                                   const Eigen::Vector3d& gravity, StepVector& rhs) const {
+                                   const Eigen::Vector3d& gravity, StepVector& rhs) {
   const Lattice& l = grid.lattice;
   rhs.velocity = std::move(free_velocity);
   for (int a = 0; a < 3; ++a) {
@@ -182,14 +228,15 @@ std::string StepProblem::rightSide(FaceField<double> free_velocity, const std::v
   assignZero(l.size, rhs.pressure);
   rhs.bodies.assign(bodies->size(), Vector6d::Zero());
   // What the prescribed motions do.
+  given = coordinates.carried(*bodies, free_twists);
   std::vector<int> moved;
   for (std::size_t b = 0; b < bodies->size(); ++b) {
-    if (free_index[b] < 0 && !free_twists[b].isZero(0.0)) moved.push_back(static_cast<int>(b));
+    if (!given[b].isZero(0.0)) moved.push_back(static_cast<int>(b));
   }
   if (!moved.empty()) {
     StepVector prescribed, resistance;
     prescribed.resize(l, bodies->size());
-    for (const int b : moved) prescribed.bodies[b] = free_twists[b];
+    for (const int b : moved) prescribed.bodies[b] = given[b];
     op_.apply(prescribed, resistance);
     const auto take = [](const std::vector<double>& from, std::vector<double>& to) {
       for (std::size_t i = 0; i < to.size(); ++i) to[i] -= from[i];
@@ -202,6 +249,7 @@ std::string StepProblem::rightSide(FaceField<double> free_velocity, const std::v
   clearHalo(l, rhs.pressure);
   for (std::size_t i = 0; i < free.size(); ++i) {
     const std::size_t b = free[i];
+    if (!given[b].isZero(0.0)) rhs.bodies[b] -= inertia[i] * given[b];
     rhs.bodies[b] += inertia[i] * free_twists[b] + stuck_inertia[b] * (stickingTwist(b, gravity) - free_twists[b]);
   }
   for (const EnclosedWeight& weight : enclosed) rhs.bodies[weight.body] += enclosedImpulse(weight, gravity);
@@ -255,6 +303,7 @@ void StepProblem::apply(StepVector& x, StepVector& y) const {
       y.bodies[b] += inertia[i] * x.bodies[b];
     }
   }
+  addJointResistance(x.bodies, y.bodies);
   for (auto& field : y.velocity) clearHalo(grid.lattice, field);
   clearHalo(grid.lattice, y.pressure);
 }

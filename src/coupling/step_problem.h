@@ -15,11 +15,13 @@
 //
 // in the units of coupling/stokes_coefficients.h; bodies by M^ = M/(rho h^3). Symmetric, indefinite. r are the impulses
 // of the contacts, J their Jacobian (coupling/contact_rows.h). Liquid that sticks to a body counts in its inertia
-// (coupling/sticking_liquid.h).
+// (coupling/sticking_liquid.h). Bodies that joints connect have the joints' velocities for unknowns in place of twists
+// (coupling/body_coordinates.h); resistance of the joints is part of M^.
 
 #include <string>
 #include <vector>
 
+#include "coupling/body_coordinates.h"
 #include "coupling/coarse_levels.h"
 #include "coupling/enclosed_rows.h"
 #include "coupling/pressure_regions.h"
@@ -41,12 +43,12 @@ class StepProblem {
                 const std::vector<double>& liquid_distance, double density, double viscosity, double step,
                 bool rates = false);
 
-  // The right side with r = 0. free_velocity: u*, gravity included; its memory becomes that of rhs.velocity.
+  // The right side with r = 0, and `given`. free_velocity: u*, gravity included; its memory becomes that of rhs.velocity.
   // free_twists: v* of free bodies, the prescribed twist of the others. gravity acts on the liquid that sticks to
   // bodies. Returns what is wrong, if there is no solution: a sealed region whose volume the prescribed motions would
   // change.
   [[nodiscard]] std::string rightSide(FaceField<double> free_velocity, const std::vector<Vector6d>& free_twists,
-                                      const Eigen::Vector3d& gravity, StepVector& rhs) const;
+                                      const Eigen::Vector3d& gravity, StepVector& rhs);
 
   // y = operator * x, inertia of the free bodies included; rows of the other bodies are zero, and so are the halos.
   void apply(StepVector& x, StepVector& y) const;
@@ -72,7 +74,12 @@ class StepProblem {
   // Everything is built anew the next time.
   void forget();
 
-  Eigen::Index bodyUnknowns() const { return static_cast<Eigen::Index>(6 * free.size()); }
+  // After joint_resistance has changed.
+  void setUnknownScales();
+
+  Eigen::Index bodyUnknowns() const { return coordinates.size(); }
+  // M^ of the unknowns, joints' resistance included: S^T M^ S + R.
+  Eigen::MatrixXd bodyInertia() const;
 
   MacGrid grid;
   Discretisation discretisation;
@@ -92,6 +99,10 @@ class StepProblem {
   double pressure_scale = 1.0;  // rho h/dt: p^ -> Pa
   double dt = 1.0;
   std::vector<int> free;                 // bodies whose twist is unknown
+  BodyCoordinates coordinates;           // the unknowns of their motion
+  Eigen::VectorXd unknown_scale;         // of these, by twist_scale
+  std::vector<double> joint_resistance;  // of all bodies' joints, N m s^2/rad or N s^2/m: impulse of a step by velocity
+  std::vector<Vector6d> given;           // what prescribed motions bring to each body's twist
   std::vector<int> free_index;           // body -> place in `free`, or -1
   std::vector<char> touched;             // by liquid: free bodies
   std::vector<Vector6d> twist_scale;     // of free bodies: sqrt of the inertia that they feel, liquid included
@@ -102,6 +113,7 @@ class StepProblem {
   std::vector<EnclosedWeight> enclosed;  // in contacts, which liquid reaches from their rim
 
  private:
+  void addJointResistance(const std::vector<Vector6d>& twists, std::vector<Vector6d>& impulses) const;
   void assembleFitted(SolidFractions& solids, const std::vector<double>& liquid_distance, bool rates);
   void assembleFractions(const SolidFractions& solids, const std::vector<double>& liquid_distance, bool rates);
   // What the liquid that sticks to a body would move at by itself: it has moved with the body, so its momentum is not

@@ -30,29 +30,15 @@ Eigen::MatrixXd contactResponse(const ContactRows& contacts, const Eigen::Matrix
   return D;
 }
 
-Eigen::VectorXd gatherBodies(const StepProblem& problem, const std::vector<Vector6d>& all) {
-  Eigen::VectorXd out(problem.bodyUnknowns());
-  for (std::size_t i = 0; i < problem.free.size(); ++i) out.segment<6>(6 * i) = all[problem.free[i]];
-  return out;
-}
-
-void scatterBodies(const StepProblem& problem, const Eigen::VectorXd& free, std::vector<Vector6d>& all) {
-  for (std::size_t i = 0; i < problem.free.size(); ++i) all[problem.free[i]] = free.segment<6>(6 * i);
-}
-
 double stepNorm(const StepProblem& problem, const StepVector& r) {
   double sum = 0.0;
   for (const auto& field : r.velocity) sum += dot(field, field);
   sum += dot(r.pressure, r.pressure);
-  return std::hypot(std::sqrt(sum), bodiesNorm(problem, gatherBodies(problem, r.bodies)));
+  return std::hypot(std::sqrt(sum), bodiesNorm(problem, problem.coordinates.gatherForces(r.bodies)));
 }
 
-double bodiesNorm(const StepProblem& problem, const Eigen::VectorXd& free) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < problem.free.size(); ++i) {
-    sum += free.segment<6>(6 * i).cwiseQuotient(problem.twist_scale[i]).squaredNorm();
-  }
-  return std::sqrt(sum);
+double bodiesNorm(const StepProblem& problem, const Eigen::VectorXd& impulses) {
+  return impulses.cwiseQuotient(problem.unknown_scale).norm();
 }
 
 void stepResidual(const StepProblem& problem, const StepVector& rhs, const StepVector& x, StepVector& residual) {

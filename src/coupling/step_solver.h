@@ -1,7 +1,7 @@
 #pragma once
 // What the solvers of a step (step_problem.h) have in common: `fast`, `direct` and `reference` answer the same two
-// questions. x holds the twists of all bodies; those that are not free are left alone and count as zero (their motion
-// is in the right side already).
+// questions. x holds the twists of all bodies but for what prescribed motions bring to them; those that are not free are
+// left alone and count as zero (their motion is in the right side already).
 
 #include <string>
 
@@ -49,18 +49,14 @@ class StepSolver {
 constexpr double kContactCompliance = 1e-9;
 void addCompliance(const ContactRows& contacts, Eigen::MatrixXd& response, Eigen::VectorXd& compliance);
 
-// J K J^T with that compliance added to its diagonal; `compliance` returns it. K: response of the twists of the free
-// bodies to impulses on them.
+// J K J^T with that compliance added to its diagonal; `compliance` returns it. K: response of the bodies' unknowns
+// to impulses on them.
 Eigen::MatrixXd contactResponse(const ContactRows& contacts, const Eigen::MatrixXd& K, Eigen::VectorXd& compliance);
-
-// Twists of the free bodies <-> one vector.
-Eigen::VectorXd gatherBodies(const StepProblem& problem, const std::vector<Vector6d>& all);
-void scatterBodies(const StepProblem& problem, const Eigen::VectorXd& free, std::vector<Vector6d>& all);
 
 // |r| over velocities, pressures and, in the scale of their inertia, bodies.
 double stepNorm(const StepProblem& problem, const StepVector& r);
-// The bodies' part of it, of impulses on the free ones.
-double bodiesNorm(const StepProblem& problem, const Eigen::VectorXd& free);
+// The bodies' part of it, of impulses on their unknowns.
+double bodiesNorm(const StepProblem& problem, const Eigen::VectorXd& impulses);
 // residual = rhs - operator * x.
 void stepResidual(const StepProblem& problem, const StepVector& rhs, const StepVector& x, StepVector& residual);
 // Its norm relative to that of the right side: 0 of one that is zero, not a number of one that is none.

@@ -92,8 +92,9 @@ class Rows {
   void assemble() const {
     out_.G.resize(count_, static_cast<Eigen::Index>(out_.faces.size()));
     out_.G.setFromTriplets(G_.begin(), G_.end());
-    out_.J.resize(count_, problem_.bodyUnknowns());
-    out_.J.setFromTriplets(J_.begin(), J_.end());
+    StressSystem::Sparse of_twists(count_, problem_.coordinates.S().rows());
+    of_twists.setFromTriplets(J_.begin(), J_.end());
+    out_.J = of_twists * problem_.coordinates.S();
     out_.inverse_weight = Eigen::VectorXd::Zero(count_);
     for (Eigen::Index i = 0; i < out_.stresses; ++i) out_.inverse_weight[i] = 1.0 / weight_[i];
     out_.A = out_.G * out_.inverse_mass.asDiagonal() * out_.G.transpose();

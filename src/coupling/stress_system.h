@@ -42,7 +42,7 @@ struct StressSystem {
   Sparse G;                                    // unknowns x faces
   Eigen::VectorXd inverse_mass;                // per face
   Eigen::VectorXd inverse_weight;              // per unknown; 0 for pressures
-  Sparse J;                                    // unknowns x 6n
+  Sparse J;                                    // unknowns x those of the bodies
   Sparse A;
 };
 

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <exception>
 #include <map>
+#include <set>
 #include <stdexcept>
 #include <tuple>
 
+#include "rigid/articulation.h"
 #include "rigid/contact_reduction.h"
 #include "rigid/convex_manifold.h"
 #include "rigid/fcl_objects.h"
@@ -115,6 +117,7 @@ void appendContactsWithWalls(const Part& part, const TankWalls& walls, double ma
 struct ContactDetector::Impl {
   TankWalls walls;
   std::size_t body_count = 0;
+  std::set<std::pair<int, int>> apart;  // bodies that do not touch, the first before the second
   std::vector<Part> parts;      // by body, then shape
   std::vector<int> part_index;  // what the objects' user data point at
   fcl::DynamicAABBTreeCollisionManagerd manager;
@@ -133,7 +136,7 @@ struct ContactDetector::Impl {
     appendImages(pairs);
     const auto irrelevant = [&](const PartPair& pair) {
       const Part &a = parts[pair.a], &b = parts[pair.b];
-      return a.body == b.body || !(a.free || b.free);
+      return a.body == b.body || !(a.free || b.free) || apart.count({a.body, b.body}) > 0;
     };
     pairs.erase(std::remove_if(pairs.begin(), pairs.end(), irrelevant), pairs.end());
     // The tree's order depends on its history. Bodies first: all of one pair of bodies together.
@@ -176,6 +179,12 @@ ContactDetector::ContactDetector(const std::vector<RigidBody>& bodies, const Tan
     : impl_(std::make_unique<Impl>()) {
   impl_->walls = walls;
   impl_->body_count = bodies.size();
+  const std::vector<int> roots = rootsOf(bodies);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    for (std::size_t j = i + 1; j < bodies.size(); ++j) {
+      if (!mayTouch(bodies, roots, i, j)) impl_->apart.emplace(static_cast<int>(i), static_cast<int>(j));
+    }
+  }
   std::map<const TriangleMesh*, std::shared_ptr<const MeshSurface>> surfaces;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     for (const Shape& shape : bodies[i].shapes) {

@@ -45,6 +45,13 @@ struct TankWalls {
   Eigen::AlignedBox3d inside;
   bool periodic[3] = {false, false, false};
 
+  // m, after which images repeat; 0 along an axis with walls.
+  Eigen::Vector3d period() const {
+    Eigen::Vector3d out = Eigen::Vector3d::Zero();
+    for (int a = 0; a < 3; ++a) out[a] = periodic[a] ? inside.sizes()[a] : 0.0;
+    return out;
+  }
+
   // That of the periodic images of x which lies inside.
   Eigen::Vector3d imageInside(const Eigen::Vector3d& x) const {
     Eigen::Vector3d image = x;

@@ -1,7 +1,6 @@
 #include "rigid/integration.h"
 
-#include <cmath>
-
+#include "rigid/oscillation.h"
 #include "rigid/rotation.h"
 
 namespace monolith {
@@ -70,15 +69,12 @@ Vector6d atCentre(const RigidBody& body, Vector6d twist) {
 
 Vector6d prescribedTwist(const RigidBody& body, double time) {
   const PrescribedMotion& motion = body.prescribed;
-  const double rate = 2.0 * M_PI * motion.frequency;
-  return atCentre(body, motion.twist + motion.amplitude * (rate * std::cos(rate * time + motion.phase)));
+  return atCentre(body, motion.twist + motion.amplitude * oscillation(motion.frequency, motion.phase, time));
 }
 
 Vector6d meanPrescribedTwist(const RigidBody& body, double time, double dt) {
   const PrescribedMotion& motion = body.prescribed;
-  const double half = M_PI * motion.frequency * dt;  // of the angle that the oscillation passes
-  // (sin(a + 2 half) - sin(a))/dt without the difference.
-  const double mean = 2.0 / dt * std::sin(half) * std::cos(2.0 * M_PI * motion.frequency * time + half + motion.phase);
+  const double mean = meanOscillation(motion.frequency, motion.phase, time, dt);
   return atCentre(body, motion.twist + motion.amplitude * mean);
 }
 
@@ -87,12 +83,18 @@ RigidBody makeRigidBody(const BodyDescription& description, double distance_reso
   body.name = description.name;
   body.motion = description.motion;
   body.prescribed = description.prescribed;
+  body.joint = description.joint;
+  body.self_collision = description.self_collision;
   body.mass = description.mass;
   body.p_BBcm = description.p_BBcm;
   body.inertia_Bcm = description.inertia_Bcm;
   body.shapes = description.shapes;
   body.distance = makeSignedDistance(description.shapes, distance_resolution);
   body.displacement = displacement(description.shapes);
+  if (body.joint) {
+    body.joint_position = body.joint->position;
+    body.joint_velocity = body.joint->velocity;
+  }
   body.q_WB = Quaterniond(description.X_WB.linear()).normalized();
   body.p_WBcm = description.X_WB * description.p_BBcm;
   switch (description.motion) {

@@ -1,4 +1,5 @@
 #include "rigid/overlap.h"
+#include "rigid/articulation.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -97,7 +98,8 @@ std::string metres(double length) {
 }  // namespace
 
 std::string describeOverlaps(const std::vector<RigidBody>& bodies, const TankWalls& walls, double tolerance, int only) {
-  const auto counts = [&](std::size_t body) { return only < 0 || body == static_cast<std::size_t>(only); };
+  const std::vector<int> roots = rootsOf(bodies);
+  const auto counts = [&](std::size_t body) { return only < 0 || roots[body] == roots[only]; };
   std::map<const TriangleMesh*, std::shared_ptr<const MeshSurface>> surfaces;
   std::vector<std::vector<Solid>> solids(bodies.size());
   std::vector<Eigen::AlignedBox3d> boxes(bodies.size());
@@ -122,7 +124,7 @@ std::string describeOverlaps(const std::vector<RigidBody>& bodies, const TankWal
   }
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     for (std::size_t j = i + 1; j < bodies.size(); ++j) {
-      if (!counts(i) && !counts(j)) continue;
+      if ((!counts(i) && !counts(j)) || !mayTouch(bodies, roots, i, j)) continue;
       const auto deepest = [&](const Vector3d& shift) {
         double most = 0.0;
         for (Solid b : solids[j]) {

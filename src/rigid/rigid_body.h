@@ -22,6 +22,8 @@ struct RigidBody {
   std::string name;
   BodyMotion motion = BodyMotion::kFree;
   PrescribedMotion prescribed;
+  std::optional<JointDescription> joint;                      // by which it hangs on another
+  bool self_collision = false;                                // with others that joints connect it to, not next to it
   double mass = 1.0;                                          // kg
   Eigen::Vector3d p_BBcm = Eigen::Vector3d::Zero();           // m
   Eigen::Matrix3d inertia_Bcm = Eigen::Matrix3d::Identity();  // kg m^2, axes of B
@@ -33,6 +35,8 @@ struct RigidBody {
   Eigen::Vector3d p_WBcm = Eigen::Vector3d::Zero();           // m
   Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();
   Vector6d twist = Vector6d::Zero();
+  double joint_position = 0.0;                                // rad, m
+  double joint_velocity = 0.0;                                // rad/s, m/s
 
   Eigen::Isometry3d pose() const {                            // X_WB, of the body frame
     Eigen::Isometry3d X_WB(q_WB);

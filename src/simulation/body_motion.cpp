@@ -36,8 +36,8 @@ double partBefore(const std::vector<RigidBody>& before, const std::vector<Contac
 
 }  // namespace
 
-std::vector<char> closingBodies(const std::vector<RigidBody>& bodies, const std::vector<Contact>& contacts, double dt,
-                                double gap_tolerance) {
+std::vector<char> closingBodies(const std::vector<RigidBody>& bodies, const std::vector<Contact>& contacts,
+                                const std::vector<JointStop>& stops, double dt, double gap_tolerance) {
   std::vector<char> closing(bodies.size(), 0);
   for (const Contact& c : contacts) {
     const double rate = gapRate(bodies, c);
@@ -45,8 +45,20 @@ std::vector<char> closingBodies(const std::vector<RigidBody>& bodies, const std:
     closing[c.body_a] = 1;
     if (c.body_b != Contact::kWall) closing[c.body_b] = 1;
   }
+  for (const JointStop& stop : stops) {
+    const double rate = stop.radius * stop.sign * bodies[stop.body].joint_velocity;
+    if (rate < 0.0 && stop.radius * stop.gap + dt * rate < -gap_tolerance) closing[stop.body] = 1;
+  }
+  const std::vector<int> roots = rootsOf(bodies);
   for (bool changed = true; changed;) {
     changed = false;
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      const int root = roots[b];
+      if (closing[b] == closing[root]) continue;
+      // Of what joints connect all or none, but for a root that is not free.
+      closing[b] = closing[root] = 1;
+      changed = true;
+    }
     for (const Contact& c : contacts) {
       if (c.body_b == Contact::kWall || closing[c.body_a] == closing[c.body_b]) continue;
       // What is not free does not pass a jump on.
@@ -76,6 +88,26 @@ void movePoints(const std::vector<RigidBody>& from, const std::vector<RigidBody>
   }
 }
 
+// Bodies that joints connect.
+std::vector<char> jointed(const std::vector<RigidBody>& bodies) {
+  std::vector<char> out(bodies.size(), 0);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (bodies[b].joint) out[b] = out[bodies[b].joint->parent] = 1;
+  }
+  return out;
+}
+
+// v* of a body that joints hold: what `held` makes of its momentum and angular momentum; the joints' part is the
+// solve's.
+Vector6d heldTwist(const RigidBody& before, const RigidBody& after, const Vector3d& gravity, const Wrench& held,
+                   double dt) {
+  Vector6d twist;
+  twist.head<3>() = before.twist.head<3>() + dt * (gravity + held.force / before.mass);
+  const Vector3d spin = before.worldInertia() * before.twist.tail<3>() + dt * held.torque;
+  twist.tail<3>() = after.worldInertia().ldlt().solve(spin);
+  return twist;
+}
+
 }  // namespace
 
 BodyPlan planEuler(const std::vector<RigidBody>& bodies, const Vector3d& gravity, const std::vector<Wrench>& wrenches,
@@ -87,21 +119,31 @@ BodyPlan planEuler(const std::vector<RigidBody>& bodies, const Vector3d& gravity
     plan.free_twists.push_back(body.motion == BodyMotion::kFree         ? freeTwist(body, gravity, wrenches[b], dt)
                                : body.motion == BodyMotion::kPrescribed ? meanPrescribedTwist(body, time, dt)
                                                                         : Vector6d(Vector6d::Zero()));
+    plan.joint_end.push_back(body.joint_position);
+    if (body.joint && body.joint->prescribed) {
+      const double mean = meanPrescribedVelocity(*body.joint->prescribed, time, dt);
+      plan.bodies[b].joint_velocity = mean;
+      plan.joint_end[b] += dt * mean;
+    }
   }
   return plan;
 }
 
 BodyPlan planSecondOrder(const std::vector<RigidBody>& bodies, const Vector3d& gravity,
                          const std::vector<Wrench>& wrenches, const BodyPast& past, double time,
-                         const StepWeights& weights, const std::vector<char>& closing, std::vector<Contact>& contacts) {
+                         const StepWeights& weights, const std::vector<char>& closing, const Vector3d& period,
+                         std::vector<Contact>& contacts) {
   const double dt = weights.dt;
   BodyPlan plan;
   plan.bodies = bodies;
   plan.closing = closing;
   plan.free_twists.assign(bodies.size(), Vector6d::Zero());
   plan.motion.resize(bodies.size());
+  const std::vector<char> held_by_joints = jointed(bodies);
+  std::vector<Wrench> holds(bodies.size());
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     RigidBody& body = plan.bodies[b];
+    plan.joint_end.push_back(body.joint_position);
     if (body.motion == BodyMotion::kPrescribed) {
       // The pose by the mean, the velocity of the end.
       body.twist = meanPrescribedTwist(body, time, dt);
@@ -116,29 +158,73 @@ BodyPlan planSecondOrder(const std::vector<RigidBody>& bodies, const Vector3d& g
     Wrench held = wrenches[b];
     held.force += weights.carry * past.liquid[b].force;
     held.torque += weights.carry * past.liquid[b].torque;
+    held.force += weights.carry * past.joints[b].force;
+    held.torque += weights.carry * past.joints[b].torque;
+    if (body.joint && body.joint->prescribed) {
+      const double mean = meanPrescribedVelocity(*body.joint->prescribed, time, dt);
+      plan.joint_end[b] += dt * mean;
+      body.joint_velocity = plan.closing[b] ? mean : prescribedVelocity(*body.joint->prescribed, time + dt);
+      if (!plan.closing[b]) body.joint_position = plan.joint_end[b];
+    } else if (body.joint && !plan.closing[b]) {
+      body.joint_position += dt * body.joint_velocity;
+    }
     if (plan.closing[b]) {
       plan.free_twists[b] = freeTwist(body, gravity, held, dt);
       continue;
     }
     const Vector3d expected = (1.0 - weights.carry) * past.liquid[b].torque + past.contact[b].torque;
-    plan.motion[b] = freeMotion(body, gravity, held, expected, dt);
-    plan.free_twists[b] = plan.motion[b].twist;
-    advancePose(body, dt);
+    if (held_by_joints[b]) {
+      advancePose(body, dt);
+      plan.motion[b].q_WB = body.q_WB;
+      plan.motion[b].angular_velocity = body.twist.tail<3>();
+    } else {
+      plan.motion[b] = freeMotion(body, gravity, held, expected, dt);
+      plan.free_twists[b] = plan.motion[b].twist;
+      advancePose(body, dt);
+    }
+    holds[b] = held;
     body.twist += weights.carry * dt * past.acceleration[b];
+  }
+  placeOnJoints(period, plan.bodies);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (!held_by_joints[b] || bodies[b].motion != BodyMotion::kFree || plan.closing[b]) continue;
+    plan.free_twists[b] = heldTwist(bodies[b], plan.bodies[b], gravity, holds[b], dt);
   }
   movePoints(bodies, plan.bodies, contacts);
   return plan;
 }
 
-void finishEuler(const std::vector<Vector6d>& twists, double dt, std::vector<RigidBody>& bodies) {
+namespace {
+
+// `old_part` of the motion has the joint's velocity before, the rest the new one.
+void finishJoint(const BodyPlan& plan, std::size_t b, const std::vector<Vector6d>& twists, double old_part, double dt,
+                 RigidBody& body) {
+  if (!body.joint) return;
+  if (!body.joint->prescribed) {
+    const double velocity = jointVelocity(plan.bodies, b, twists);
+    body.joint_position += dt * (old_part * body.joint_velocity + (1.0 - old_part) * velocity);
+    body.joint_velocity = velocity;
+    return;
+  }
+  body.joint_position = plan.joint_end[b];
+  body.joint_velocity = plan.bodies[b].joint_velocity;
+}
+
+}  // namespace
+
+void finishEuler(const BodyPlan& plan, const std::vector<Vector6d>& twists, double dt, const Vector3d& period,
+                 std::vector<RigidBody>& bodies) {
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     bodies[b].twist = twists[b];
     advancePose(bodies[b], dt);
+    finishJoint(plan, b, twists, 0.0, dt, bodies[b]);
   }
+  placeOnJoints(period, bodies);
 }
 
 void finishSecondOrder(const BodyPlan& plan, const std::vector<Contact>& contacts, bool rebound,
-                       const std::vector<Vector6d>& twists, double dt, std::vector<RigidBody>& bodies) {
+                       const std::vector<Vector6d>& twists, double dt, const Vector3d& period,
+                       std::vector<RigidBody>& bodies) {
   const double part = rebound ? partBefore(bodies, contacts, plan.closing, twists, dt) : 0.0;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     RigidBody& body = bodies[b];
@@ -153,7 +239,9 @@ void finishSecondOrder(const BodyPlan& plan, const std::vector<Contact>& contact
     } else if (body.motion == BodyMotion::kFree) {
       finishMotion(plan.motion[b], twists[b], dt, body);
     }
+    finishJoint(plan, b, twists, plan.closing[b] ? part : 0.5, dt, body);
   }
+  placeOnJoints(period, bodies);
 }
 
 namespace {

@@ -108,11 +108,17 @@ void Simulation::Impl::initialise() {
     made.thinnest = resolution.thinnest;
     if (!resolution.warning.empty()) warnings.push_back(scene.source + ": " + resolution.warning);
   }
+  for (RigidBody& body : state.bodies) {
+    if (body.joint && body.joint->prescribed) body.joint_velocity = prescribedVelocity(*body.joint->prescribed, 0.0);
+  }
+  moveAssemblies(state.bodies);
   const std::string overlaps = describeOverlaps(state.bodies, walls, kOverlapAtStart * grid.h);
   if (!overlaps.empty())
     throw SceneError(scene.source + ": bodies overlap at the start, expected them apart:\n" + overlaps);
   detector = std::make_unique<ContactDetector>(state.bodies, walls);
   wrenches.assign(state.bodies.size(), Wrench());
+  commands.clear();
+  for (const RigidBody& body : state.bodies) commands.push_back({0.0, body.joint_position, 0.0});
   state.surface.emplace_back(grid, scene.liquid.fill_level, scene.liquid.boxes, solidDistance(grid, state.bodies));
   if (state.surface[0].empty() && scene.liquid.any()) {
     std::ostringstream text;
@@ -130,6 +136,9 @@ void Simulation::Impl::initialise() {
   state.coupled.contact.assign(state.bodies.size(), Wrench());
   state.mean_liquid = state.coupled.liquid;
   state.mean_contact = state.coupled.contact;
+  state.mean_effort.assign(state.bodies.size(), 0.0);
+  state.joints.assign(state.bodies.size(), Wrench());
+  state.joint_modes.assign(state.bodies.size(), JointMode());
   sampler.forget();
   system.forget();
   prepareGeometry();
@@ -143,6 +152,15 @@ void Simulation::Impl::initialise() {
   }
   measureState(report);
   tellModel(report.model);
+}
+
+// What hangs on others, to where they are and as they move.
+void Simulation::Impl::moveAssemblies(std::vector<RigidBody>& bodies) const {
+  placeOnJoints(walls.period(), bodies);
+  moveWithJoints(bodies);
+  for (RigidBody& body : bodies) {
+    if (body.joint) body.p_WBcm = walls.imageInside(body.p_WBcm);
+  }
 }
 
 void Simulation::Impl::prepareGeometry() {
@@ -240,8 +258,10 @@ StepReport Simulation::step() {
   const int threads_before = omp_get_max_threads();
   if (m.scene.solver.threads > 0) omp_set_num_threads(m.scene.solver.threads);
   const std::vector<Wrench> last_liquid = m.state.mean_liquid, last_contact = m.state.mean_contact;
+  const std::vector<double> last_effort = m.state.mean_effort;
   m.state.mean_liquid.assign(m.state.bodies.size(), Wrench());
   m.state.mean_contact.assign(m.state.bodies.size(), Wrench());
+  m.state.mean_effort.assign(m.state.bodies.size(), 0.0);
   StepReport step;
   double left = m.scene.time_step;
   {
@@ -309,6 +329,7 @@ StepReport Simulation::step() {
       if (step.substeps > 1) m.before.restore(m.state);
       m.state.mean_liquid = last_liquid;
       m.state.mean_contact = last_contact;
+      m.state.mean_effort = last_effort;
       putBack(was_predicted);
       // Of the state, which is that of the last step.
       step.liquid_volume = m.report.liquid_volume;
@@ -353,6 +374,29 @@ void Simulation::setWrench(int body, const Wrench& wrench) {
   impl_->wrenches[body] = wrench;
 }
 
+std::vector<JointState> Simulation::jointStates() const {
+  std::vector<JointState> out;
+  const SimulationState& state = impl_->state;
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+    const RigidBody& body = state.bodies[b];
+    if (!body.joint) continue;
+    out.push_back({static_cast<int>(b), body.joint_position, body.joint_velocity, state.mean_effort[b]});
+  }
+  return out;
+}
+
+void Simulation::setJointCommand(int body, const JointCommand& command) {
+  const std::vector<RigidBody>& bodies = impl_->state.bodies;
+  if (body < 0 || body >= static_cast<int>(bodies.size()) || !bodies[body].joint || bodies[body].joint->prescribed) {
+    throw std::invalid_argument("joint of body index " + std::to_string(body) +
+                                ": expected a body that hangs on another by a joint whose motion is not prescribed");
+  }
+  if (!std::isfinite(command.effort) || !std::isfinite(command.position) || !std::isfinite(command.velocity)) {
+    throw std::invalid_argument("command for joint '" + bodies[body].joint->name + "': expected finite numbers");
+  }
+  impl_->commands[body] = command;
+}
+
 void Simulation::setBodyState(int body, const Eigen::Isometry3d& X_WB, const Eigen::Vector3d& velocity,
                               const Eigen::Vector3d& angular_velocity) {
   Impl& m = *impl_;
@@ -363,6 +407,11 @@ void Simulation::setBodyState(int body, const Eigen::Isometry3d& X_WB, const Eig
   const std::string& name = m.state.bodies[body].name;
   if (!X_WB.matrix().allFinite() || !velocity.allFinite() || !angular_velocity.allFinite()) {
     throw std::invalid_argument("state of '" + name + "': expected finite numbers");
+  }
+  if (m.state.bodies[body].joint) {
+    throw std::invalid_argument("state of '" + name + "': it hangs on '" +
+                                m.state.bodies[rootsOf(m.state.bodies)[body]].name +
+                                "', expected that one, or a body without a joint");
   }
   std::vector<RigidBody> bodies = m.state.bodies;
   RigidBody& moved = bodies[body];
@@ -376,6 +425,7 @@ void Simulation::setBodyState(int body, const Eigen::Isometry3d& X_WB, const Eig
                                 " m, its velocity " + shownVector(moved.twist.head<3>()) +
                                 " m/s: expected finite numbers, the energy too");
   }
+  m.moveAssemblies(bodies);
   const std::string overlaps = describeOverlaps(bodies, m.walls, kOverlapTolerance * m.grid.h, body);
   if (!overlaps.empty()) {
     throw std::invalid_argument("state of '" + name +

@@ -15,6 +15,7 @@
 #include "rigid/integration.h"
 #include "rigid/rigid_body.h"
 #include "scene/scene.h"
+#include "simulation/joint_drives.h"
 #include "simulation/statistics.h"
 
 namespace monolith {
@@ -26,6 +27,14 @@ struct BodyState {
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  // rad/s, in W
   Wrench liquid;   // on the body, at the centre of mass, mean over the last step
   Wrench contact;  // likewise
+};
+
+// Joint by which a body hangs on another: rad, rad/s, N m, or m, m/s, N.
+struct JointState {
+  int body = 0;
+  double position = 0.0;
+  double velocity = 0.0;
+  double effort = 0.0;  // of command and servo, or of what prescribes its motion, mean over the last step
 };
 
 struct SurfacePoint {
@@ -57,8 +66,14 @@ class Simulation {
   const std::vector<RigidBody>& bodies() const;
   // Acts on body i during the steps to come, until replaced. Throws std::invalid_argument unless finite.
   void setWrench(int body, const Wrench& wrench);
+  // In the order of the bodies.
+  std::vector<JointState> jointStates() const;
+  // What the joint of a body is to do during the steps to come, until replaced; at first nothing, its servo to stay
+  // where it starts. Throws std::invalid_argument unless finite, and of a body without a joint that may move freely.
+  void setJointCommand(int body, const JointCommand& command);
   // Throws std::invalid_argument unless finite, inside the tank and clear of the other bodies. Along periodic axes any
-  // image of the pose will do; the one in the tank is kept.
+  // image of the pose will do; the one in the tank is kept. What hangs on the body goes with it, its joints as they
+  // are; a body that hangs on another cannot be set.
   void setBodyState(int body, const Eigen::Isometry3d& X_WB, const Eigen::Vector3d& velocity,
                     const Eigen::Vector3d& angular_velocity);
 

@@ -2,6 +2,7 @@
 // What the sources of Simulation share: its parts.
 
 #include <chrono>
+#include <functional>
 #include <memory>
 
 #include "coupling/coupled_system.h"
@@ -10,6 +11,7 @@
 #include "rigid/contact.h"
 #include "simulation/body_motion.h"
 #include "simulation/contact_laws.h"
+#include "simulation/joint_drives.h"
 #include "simulation/liquid_state.h"
 #include "simulation/non_newtonian.h"
 #include "simulation/saved_state.h"
@@ -61,14 +63,20 @@ struct Simulation::Impl {
   bool secondOrder() const { return scene.solver.time_stepping == TimeStepping::kBdf2; }
   StepWeights weights(double dt) const;
   double contactReach(double dt) const;
+  std::vector<Wrench> actingWrenches() const;
   BodyPlan planBodies(const StepWeights& w, const std::vector<char>& closing, std::vector<Contact>& contacts) const;
   void prepareSolve(const StepWeights& w);
   void advectLiquid(const StepWeights& w, FaceField<double>& free_velocity);
   void guess(const StepWeights& w, const FaceField<double>& free_velocity, CoupledState& start) const;
-  CoupledReport solveWithLiquid(const StepWeights& w, const std::vector<Contact>& contacts, StepReport& report);
+  CoupledReport solveWithLiquid(const StepWeights& w, const std::vector<Contact>& contacts,
+                                const std::vector<JointStop>& stops, StepReport& report);
+  CoupledReport solveWithDrives(const StepWeights& w, JointDrives& drives,
+                                const std::function<CoupledReport(FaceField<double>&)>& solve);
   void takeMeans(const StepWeights& w, const std::vector<Wrench>& liquid_before);
+  void takeJointMeans(const StepWeights& w);
   void moveLiquid(const StepWeights& w, StepReport& report);
   void enterImages();
+  void moveAssemblies(std::vector<RigidBody>& bodies) const;
   void prepareGeometry();
   void tellDepartures(StepReport& report);
   void measureLiquidMotion(StepReport& report);
@@ -93,12 +101,14 @@ struct Simulation::Impl {
     CoupledState other;
     FaceMask known_before, known;
     double typical_viscosity = 0.0;  // Pa s, of the solve, of a non-Newtonian liquid
+    std::vector<JointMode> joint_modes;
   } scratch;
   CoupledSystem system;
   ContactLaws laws;
   ViscosityLaw viscosity_law;
   std::unique_ptr<ContactDetector> detector;
   std::vector<Wrench> wrenches;
+  std::vector<JointCommand> commands;
   double target_volume = 0.0;  // m^3
   // Of the liquid that stuck to the bodies in the last solve, at their poses then.
   double sticking_energy = 0.0;  // J

@@ -6,6 +6,7 @@
 #include "coupling/coupled_system.h"
 #include "fluid/free_surface.h"
 #include "rigid/rigid_body.h"
+#include "simulation/joint_drives.h"
 
 namespace monolith {
 
@@ -25,6 +26,9 @@ struct SimulationState {
   std::vector<char> departed;                     // bodies whose departure from the tank has been told
   std::vector<Vector6d> stuck_twists;             // of the liquid that sticks to each body, set or not since
   std::vector<Wrench> mean_liquid, mean_contact;  // over the last output step
+  std::vector<double> mean_effort;                // likewise, N m, N, of the bodies' joints
+  std::vector<Wrench> joints;                     // on each body by what joints do implicitly, mean over the last sub-step
+  std::vector<JointMode> joint_modes;
   double liquid_speed = 0.0;                      // m/s, no component of the velocity is larger
   double fastest = 0.0;                           // m/s, see typicalSpeed()
   double last_dt = 0.0;                           // s, of the last sub-step

@@ -22,9 +22,19 @@ constexpr double kSteepestVelocity = 0.03;
 constexpr double kSteepestRate = 0.15;
 // Of sqrt(gravity h), by which the surface may be faster than limitCutFaces() has it: what is limited is no wave.
 constexpr double kSlack = 0.3;
+constexpr int kMostDriveRounds = 8;
 // After the step of an impact one of backward Euler, for the next to continue.
 constexpr int kStepsAfterImpact = 1;
 constexpr double kRoundOff = 1e-6;  // of a length of sub-steps that just fits
+
+// Of a free body by a wrench over dt.
+Vector6d twistChange(const RigidBody& body, const Wrench& wrench, double dt) {
+  Vector6d out = Vector6d::Zero();
+  if (body.motion != BodyMotion::kFree) return out;
+  out.head<3>() = dt / body.mass * wrench.force;
+  out.tail<3>() = dt * body.worldInertia().ldlt().solve(wrench.torque);
+  return out;
+}
 
 }  // namespace
 
@@ -39,18 +49,29 @@ StepWeights Simulation::Impl::weights(double dt) const {
 // and what gravity and wrenches add.
 double Simulation::Impl::contactReach(double dt) const {
   double reach = std::max(bodySpeed(), state.liquid_speed) + scene.gravity.norm() * dt;
-  const BodyPlan next = planEuler(state.bodies, scene.gravity, wrenches, state.time, dt);
+  const BodyPlan next = planEuler(state.bodies, scene.gravity, actingWrenches(), state.time, dt);
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
     reach = std::max(reach, state.bodies[b].fastestPoint(next.free_twists[b]));
   }
   return std::min(2.0 * reach * dt, scene.tank.size.norm()) + 0.05 * grid.h;
 }
 
+// From outside, held over the step.
+std::vector<Wrench> Simulation::Impl::actingWrenches() const {
+  std::vector<Wrench> out = wrenches;
+  for (std::size_t b = 0; b < out.size(); ++b) {
+    const double effort = JointDrives::heldEffort(state.bodies[b], commands[b]);
+    if (effort != 0.0) addJointEffort(state.bodies, b, effort, out);
+  }
+  return out;
+}
+
 BodyPlan Simulation::Impl::planBodies(const StepWeights& w, const std::vector<char>& closing,
                                       std::vector<Contact>& contacts) const {
-  if (w.order == 1) return planEuler(state.bodies, scene.gravity, wrenches, state.time, w.dt);
-  const BodyPast past{state.body_acceleration, state.coupled.liquid, state.coupled.contact};
-  return planSecondOrder(state.bodies, scene.gravity, wrenches, past, state.time, w, closing, contacts);
+  if (w.order == 1) return planEuler(state.bodies, scene.gravity, actingWrenches(), state.time, w.dt);
+  const BodyPast past{state.body_acceleration, state.coupled.liquid, state.coupled.contact, state.joints};
+  return planSecondOrder(state.bodies, scene.gravity, actingWrenches(), past, state.time, w, closing, walls.period(),
+                         contacts);
 }
 
 // Geometry of the solve. Of the state nothing changes: the step may fail.
@@ -131,14 +152,50 @@ void Simulation::Impl::guess(const StepWeights& w, const FaceField<double>& free
   }
 }
 
+// What joints' drives do depends on the motion where they are limited: solved again until it is what was assumed.
+CoupledReport Simulation::Impl::solveWithDrives(const StepWeights& w, JointDrives& drives,
+                                                const std::function<CoupledReport(FaceField<double>&)>& solve) {
+  const std::vector<Vector6d> free_twists = plan.free_twists;
+  const std::size_t count = state.bodies.size();
+  CoupledReport all;
+  for (int round = 0; round < kMostDriveRounds; ++round) {
+    if (round > 0) system.changeJointResistance(drives.resistances());
+    std::vector<Wrench> efforts(count);
+    for (std::size_t b = 0; b < count; ++b) {
+      const double effort = drives.effort(b);
+      if (effort != 0.0) addJointEffort(plan.bodies, b, effort, efforts);
+    }
+    for (std::size_t b = 0; b < count; ++b) {
+      plan.free_twists[b] = free_twists[b] + twistChange(plan.bodies[b], efforts[b], w.dt);
+    }
+    FaceField<double> right = scratch.free_velocity;
+    CoupledReport report = solve(right);
+    plan.free_twists = free_twists;
+    report.iterations += all.iterations;
+    report.solves += all.solves;
+    report.friction_iterations += all.friction_iterations;
+    all = report;
+    if (all.status != SolveStatus::kConverged) return all;
+    std::vector<double> velocities(count);
+    for (std::size_t b = 0; b < count; ++b) velocities[b] = jointVelocity(plan.bodies, b, scratch.other.twists);
+    scratch.joint_modes = drives.modes();
+    if (drives.agree(velocities)) return all;
+  }
+  all.status = SolveStatus::kNotConverged;
+  all.message = "what servos and friction do in the joints did not settle in " + std::to_string(all.solves) + " solves";
+  return all;
+}
+
 CoupledReport Simulation::Impl::solveWithLiquid(const StepWeights& w, const std::vector<Contact>& contacts,
-                                                StepReport& step) {
+                                                const std::vector<JointStop>& stops, StepReport& step) {
   const LiquidDescription& liquid = scene.liquid;
   FaceField<double>& free_velocity = scratch.free_velocity;
+  JointDrives drives(state.bodies, commands, w, state.joint_modes);
   {
     const StageClock clock(step.times.geometry);
     prepareSolve(w);
     system.setStickingViscosity(stickingViscosity(liquid.density, typicalSpeed(), grid.h));
+    system.setJointResistance(drives.resistances());
     const auto& distance = step_surface[0].distance();
     if (nonNewtonian()) {
       system.assembleVariable(solids, plan.bodies, distance, liquid.density, state.typical_viscosity, w.implicit);
@@ -155,6 +212,8 @@ CoupledReport Simulation::Impl::solveWithLiquid(const StepWeights& w, const std:
   const StageClock clock(step.times.solve);
   std::vector<Contact> scaled = contacts;  // the solve divides gaps by what it takes for the step
   for (Contact& contact : scaled) contact.gap *= w.implicit / w.dt;
+  std::vector<JointStop> scaled_stops = stops;
+  for (JointStop& stop : scaled_stops) stop.gap *= w.implicit / w.dt;
   CoupledOptions options;
   const double wanted = scene.solver.tolerance;
   options.tolerance = state.started ? wanted : std::min(wanted, std::max(kFirstTolerance * wanted, kLeastTolerance));
@@ -162,20 +221,24 @@ CoupledReport Simulation::Impl::solveWithLiquid(const StepWeights& w, const std:
   CoupledState& solution = scratch.other;
   guess(w, free_velocity, solution);
   const auto solve = [&](FaceField<double>& right, const CoupledOptions& with) {
-    return system.solve(right, plan.free_twists, scaled, laws.of(contacts), scene.gravity, with, solution);
+    return system.solve(right, plan.free_twists, scaled, laws.of(contacts), scaled_stops, scene.gravity, with, solution);
   };
-  if (!nonNewtonian()) return solve(free_velocity, options);
-  RheologyReport rheology;
-  const auto solveAgain = [&](const CoupledOptions& with) {
-    FaceField<double> right = free_velocity;
-    return solve(right, with);
+  const auto solveOnce = [&](FaceField<double>& right) {
+    if (!nonNewtonian()) return solve(right, options);
+    RheologyReport rheology;
+    const auto solveAgain = [&](const CoupledOptions& with) {
+      FaceField<double> again = right;
+      return solve(again, with);
+    };
+    const CoupledReport solved =
+        solveNonNewtonian(system, viscosity_law, state.typical_viscosity, liquid.rheology.maximum_iterations,
+                          scene.solver.tolerance, options, solveAgain, solution, rheology);
+    step.rheology_iterations += rheology.iterations;
+    scratch.typical_viscosity = rheology.typical_viscosity;
+    return solved;
   };
-  const CoupledReport solved =
-      solveNonNewtonian(system, viscosity_law, state.typical_viscosity, liquid.rheology.maximum_iterations,
-                        scene.solver.tolerance, options, solveAgain, solution, rheology);
-  step.rheology_iterations += rheology.iterations;
-  scratch.typical_viscosity = rheology.typical_viscosity;
-  return solved;
+  scratch.joint_modes = state.joint_modes;
+  return drives.any() ? solveWithDrives(w, drives, solveOnce) : solveOnce(free_velocity);
 }
 
 // The solve's wrenches are the impulses over the part of the step that is implicit; what is kept are means over it.
@@ -196,6 +259,46 @@ void Simulation::Impl::takeMeans(const StepWeights& w, const std::vector<Wrench>
     state.mean_contact[b].force += share * contact.force;
     state.mean_contact[b].torque += share * contact.torque;
   }
+}
+
+// Impulses of the joints on each body: what the solve adds to its momentum and neither liquid nor contact does. What
+// next step carries on is that but for what sets in and ends at once, stops and friction.
+void Simulation::Impl::takeJointMeans(const StepWeights& w) {
+  const std::size_t count = plan.bodies.size();
+  std::vector<Wrench> joints(count);
+  const CoupledState& solved = scratch.other;
+  for (std::size_t b = 0; b < count; ++b) {
+    const RigidBody& body = plan.bodies[b];
+    if (body.motion != BodyMotion::kFree) continue;
+    const Vector6d change = solved.twists[b] - plan.free_twists[b];
+    const double part = w.implicit / w.dt;
+    joints[b].force = body.mass / w.dt * change.head<3>() - part * (solved.liquid[b].force + solved.contact[b].force);
+    joints[b].torque = body.worldInertia() / w.dt * change.tail<3>() -
+                       part * (solved.liquid[b].torque + solved.contact[b].torque);
+  }
+  const JointDrives drives(state.bodies, commands, w, scratch.joint_modes);
+  for (const StopForce& stop : solved.contact_forces.stops) {
+    addJointEffort(plan.bodies, stop.body, -w.implicit / w.dt * stop.sign * stop.effort, joints);
+  }
+  const double share = w.dt / scene.time_step;
+  std::vector<Vector6d> through(count);  // wrench through each joint, of all that hangs on it
+  for (std::size_t b = 0; b < count; ++b) {
+    const double velocity = jointVelocity(plan.bodies, b, solved.twists);
+    const double friction = drives.frictionEffort(b, velocity);
+    if (friction != 0.0) addJointEffort(plan.bodies, b, -friction, joints);
+    joints[b].force += w.carry * state.joints[b].force;
+    joints[b].torque += w.carry * state.joints[b].torque;
+    through[b] << joints[b].force, joints[b].torque;
+    const double servo = drives.servoEffort(b, velocity);
+    state.mean_effort[b] += share * (JointDrives::heldEffort(state.bodies[b], commands[b]) + servo);
+  }
+  for (std::size_t b = count; b-- > 0;) {
+    const RigidBody& body = plan.bodies[b];
+    if (!body.joint) continue;
+    if (body.joint->prescribed) state.mean_effort[b] += share * jointTwist(body).dot(through[b]);
+    through[body.joint->parent] += carryMatrix(plan.bodies, b).transpose() * through[b];
+  }
+  state.joints = joints;
 }
 
 void Simulation::Impl::moveLiquid(const StepWeights& w, StepReport& step) {
@@ -274,7 +377,7 @@ void Simulation::Impl::enterImages() {
     shift.emplace_back(image - body.p_WBcm);
     body.p_WBcm = image;
   }
-  for (ContactForce& force : state.coupled.contact_forces) {
+  for (ContactForce& force : state.coupled.contact_forces.contacts) {
     Contact& contact = force.contact;
     contact.point += shift[contact.body_a];
     if (contact.body_b != Contact::kWall) contact.shift_b += shift[contact.body_a] - shift[contact.body_b];
@@ -284,15 +387,17 @@ void Simulation::Impl::enterImages() {
 bool Simulation::Impl::substep(double dt, StepReport& step) {
   const StepWeights w = weights(dt);
   std::vector<Contact> contacts;
+  std::vector<JointStop> stops;
   std::vector<char> closing;
   {
     const StageClock clock(step.times.contact);
     contacts = detector->detect(state.bodies, contactReach(dt));
-    closing = closingBodies(state.bodies, contacts, dt, kClosingTolerance * grid.h);
+    stops = jointStops(state.bodies, dt);
+    closing = closingBodies(state.bodies, contacts, stops, dt, kClosingTolerance * grid.h);
     for (const Contact& contact : contacts) step.penetration = std::max(step.penetration, -contact.gap);
     plan = planBodies(w, closing, contacts);
   }
-  const CoupledReport solved = solveWithLiquid(w, contacts, step);
+  const CoupledReport solved = solveWithLiquid(w, contacts, stops, step);
   step.iterations += solved.iterations;
   step.liquid_solves += solved.solves;
   step.friction_iterations += solved.friction_iterations;
@@ -310,9 +415,9 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
     const bool rebound = std::any_of(contacts.begin(), contacts.end(), [&](const Contact& contact) {
       return closing[contact.body_a] && laws.of(contact.body_a, contact.body_b).restitution > 0.0;
     });
-    finishSecondOrder(plan, contacts, rebound, scratch.other.twists, dt, moved);
+    finishSecondOrder(plan, contacts, rebound, scratch.other.twists, dt, walls.period(), moved);
   } else {
-    finishEuler(scratch.other.twists, dt, moved);
+    finishEuler(plan, scratch.other.twists, dt, walls.period(), moved);
   }
   step.message = describeIntrusion(plan, contacts, walls, scratch.other.twists, dt, kMostIntrusion * grid.h,
                                    state.bodies, moved);
@@ -321,6 +426,8 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
     return false;
   }
   state.fastest = typicalSpeed();
+  takeJointMeans(w);
+  state.joint_modes = scratch.joint_modes;
   std::swap(state.coupled, scratch.other);
   if (nonNewtonian()) state.typical_viscosity = scratch.typical_viscosity;
   state.started = true;

@@ -49,8 +49,10 @@ void ContactSystem::setByBodies() {
     inverse_.push_back(M.inverse());
     const Eigen::Matrix3d moved = inverse_.back() * turn_[i];
     for (const auto& [row, J_row] : contact.of) {
-      const Eigen::Matrix<double, 6, 3> pushed = J_row.transpose() * moved;
-      for (const auto& [column, J_column] : contact.of) G.block<6, 6>(row, column) += pushed * J_column;
+      const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, 6, 3> pushed = J_row.transpose() * moved;
+      for (const auto& [column, J_column] : contact.of) {
+        G.block(row, column, J_row.cols(), J_column.cols()) += pushed * J_column;
+      }
     }
   }
   factor_.compute(G);

@@ -19,16 +19,17 @@ namespace monolith {
 // compliance.
 struct BodyResponse {
   struct Contact {
-    // Its rows of J, the normal's first, for each of the bodies that it moves; with that body's first unknown.
-    std::vector<std::pair<Eigen::Index, Eigen::Matrix<double, 3, 6>>> of;
+    // Its rows of J, the normal's first, of unknowns that follow each other; with the first of them.
+    using Rows = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, 6>;
+    std::vector<std::pair<Eigen::Index, Rows>> of;
 
-    Eigen::Vector3d velocity(const Eigen::VectorXd& twists) const {
+    Eigen::Vector3d velocity(const Eigen::VectorXd& motion) const {
       Eigen::Vector3d out = Eigen::Vector3d::Zero();
-      for (const auto& [first, J] : of) out += J * twists.segment<6>(first);
+      for (const auto& [first, J] : of) out += J * motion.segment(first, J.cols());
       return out;
     }
     void push(const Eigen::Vector3d& impulse, Eigen::VectorXd& bodies) const {
-      for (const auto& [first, J] : of) bodies.segment<6>(first) += J.transpose() * impulse;
+      for (const auto& [first, J] : of) bodies.segment(first, J.cols()) += J.transpose() * impulse;
     }
   };
   std::vector<Contact> contacts;

@@ -1,0 +1,136 @@
+#include "rigid/articulation.h"
+
+#include <cmath>
+#include <utility>
+
+#include "rigid/oscillation.h"
+#include "scene/joint_motion.h"
+
+namespace monolith {
+
+using Eigen::Vector3d;
+
+namespace {
+
+// A stop counts if it is nearer than the joint comes in a step at this many times its speed, or than this part of the
+// body's radius: what pushes the body may be new.
+constexpr double kFaster = 3.0;
+constexpr double kNear = 0.1;
+
+// World axes.
+Vector3d axisOf(const RigidBody& body) { return body.q_WB * body.joint->axis; }
+
+// Of body b, where its joint and its parent put it: not that of an image.
+Eigen::Isometry3d posed(const std::vector<RigidBody>& bodies, const RigidBody& body) {
+  return bodies[body.joint->parent].pose() * jointPose(*body.joint, body.joint_position);
+}
+
+}  // namespace
+
+std::vector<int> rootsOf(const std::vector<RigidBody>& bodies) {
+  std::vector<int> roots(bodies.size());
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    roots[b] = bodies[b].joint ? roots[bodies[b].joint->parent] : static_cast<int>(b);
+  }
+  return roots;
+}
+
+bool mayTouch(const std::vector<RigidBody>& bodies, const std::vector<int>& roots, std::size_t a, std::size_t b) {
+  if (roots[a] != roots[b]) return true;
+  const auto hangs = [&](std::size_t child, std::size_t parent) {
+    return bodies[child].joint && bodies[child].joint->parent == static_cast<int>(parent);
+  };
+  return bodies[a].self_collision && bodies[b].self_collision && !hangs(a, b) && !hangs(b, a);
+}
+
+Vector6d jointTwist(const RigidBody& body) {
+  const Vector3d axis = axisOf(body);
+  Vector6d s = Vector6d::Zero();
+  switch (body.joint->type) {
+    case JointType::kRevolute:
+      s.head<3>() = axis.cross(body.q_WB * body.p_BBcm);
+      s.tail<3>() = axis;
+      break;
+    case JointType::kPrismatic: s.head<3>() = axis; break;
+  }
+  return s;
+}
+
+Matrix6d carryMatrix(const std::vector<RigidBody>& bodies, std::size_t b) {
+  const RigidBody& body = bodies[b];
+  const Vector3d arm = posed(bodies, body) * body.p_BBcm - bodies[body.joint->parent].p_WBcm;
+  Matrix6d X = Matrix6d::Identity();
+  for (int q = 0; q < 3; ++q) X.block<3, 1>(0, 3 + q) = Vector3d::Unit(q).cross(arm);
+  return X;
+}
+
+Vector6d jointRow(const RigidBody& body) {
+  Vector6d row = Vector6d::Zero();
+  switch (body.joint->type) {
+    case JointType::kRevolute: row.tail<3>() = axisOf(body); break;
+    case JointType::kPrismatic: row.head<3>() = axisOf(body); break;
+  }
+  return row;
+}
+
+double jointVelocity(const std::vector<RigidBody>& bodies, std::size_t b, const std::vector<Vector6d>& twists) {
+  if (!bodies[b].joint) return 0.0;
+  return jointRow(bodies[b]).dot(twists[b] - carryMatrix(bodies, b) * twists[bodies[b].joint->parent]);
+}
+
+void placeOnJoints(const Vector3d& period, std::vector<RigidBody>& bodies) {
+  for (RigidBody& body : bodies) {
+    if (!body.joint) continue;
+    const Eigen::Isometry3d X_WB = posed(bodies, body);
+    Vector3d centre = X_WB * body.p_BBcm;
+    for (int a = 0; a < 3; ++a) {
+      if (period[a] > 0.0) centre[a] += period[a] * std::round((body.p_WBcm[a] - centre[a]) / period[a]);
+    }
+    body.q_WB = Eigen::Quaterniond(X_WB.linear()).normalized();
+    body.p_WBcm = centre;
+  }
+}
+
+void moveWithJoints(std::vector<RigidBody>& bodies) {
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    RigidBody& body = bodies[b];
+    if (!body.joint) continue;
+    body.twist = carryMatrix(bodies, b) * bodies[body.joint->parent].twist + body.joint_velocity * jointTwist(body);
+  }
+}
+
+double prescribedVelocity(const PrescribedJointMotion& motion, double time) {
+  return motion.rate + motion.amplitude * oscillation(motion.frequency, motion.phase, time);
+}
+
+double meanPrescribedVelocity(const PrescribedJointMotion& motion, double time, double dt) {
+  return motion.rate + motion.amplitude * meanOscillation(motion.frequency, motion.phase, time, dt);
+}
+
+std::vector<JointStop> jointStops(const std::vector<RigidBody>& bodies, double dt) {
+  std::vector<JointStop> stops;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const RigidBody& body = bodies[b];
+    if (!body.joint || body.joint->prescribed) continue;
+    const double radius = body.joint->type == JointType::kRevolute ? body.radius() : 1.0;
+    const double reach = kFaster * std::abs(body.joint_velocity) * dt + kNear * body.radius() / radius;
+    for (const auto& [sign, gap] : {std::pair(1.0, body.joint_position - body.joint->lower),
+                                    std::pair(-1.0, body.joint->upper - body.joint_position)}) {
+      if (gap <= reach) stops.push_back({static_cast<int>(b), sign, gap, radius});
+    }
+  }
+  return stops;
+}
+
+void addJointEffort(const std::vector<RigidBody>& bodies, std::size_t b, double effort, std::vector<Wrench>& wrenches) {
+  const Vector6d row = jointRow(bodies[b]);
+  // On its parent what does the same work where the two are one.
+  const Vector6d reaction = carryMatrix(bodies, b).transpose() * row;
+  wrenches[b].force += effort * row.head<3>();
+  wrenches[b].torque += effort * row.tail<3>();
+  Wrench& parent = wrenches[bodies[b].joint->parent];
+  parent.force -= effort * reaction.head<3>();
+  parent.torque -= effort * reaction.tail<3>();
+}
+
+}  // namespace monolith
