@@ -61,23 +61,29 @@ Matrix3d unitInertia(const Shape& shape) {
 
 TEST(ShippedUrdfs, MassAndInertiaAreThoseOfTheDensity) {
   const std::map<std::string, double> densities = {
-      {"steel_sphere", 7800}, {"aluminium_box", 2700}, {"torus", 1500},
-      {"light_ball", 100},    {"wood_cylinder", 900},  {"tencate_sphere", 1120},
-      {"stack_bottom", 1500}, {"stack_middle", 2500},  {"stack_top", 8000}};
+      {"steel_sphere", 7800}, {"aluminium_box", 2700},  {"torus", 1500},        {"light_ball", 100},
+      {"wood_cylinder", 900}, {"tencate_sphere", 1120}, {"stack_bottom", 1500}, {"stack_middle", 2500},
+      {"stack_top", 8000},    {"two_link_arm", 2700}};
   std::size_t found = 0;
   for (const auto& entry : fs::directory_iterator(kSource / "urdf")) {
     if (entry.path().extension() != ".urdf") continue;
     const auto density = densities.find(entry.path().stem().string());
     ASSERT_NE(density, densities.end()) << entry.path() << " has no density in this test";
-    BodyDescription body;
+    std::vector<BodyDescription> bodies;
     const std::string xml = readTextFile(entry.path().string());
-    const auto errors = readUrdfBody({entry.path().string(), (kSource / "urdf").string(), xml}, SceneResolver(), body);
+    const auto errors =
+        readUrdfBodies({entry.path().string(), (kSource / "urdf").string(), xml}, SceneResolver(), bodies);
     ASSERT_TRUE(errors.empty()) << errors.front();
-    ASSERT_EQ(body.shapes.size(), 1u);
-    EXPECT_NEAR(body.mass, density->second * volume(body.shapes[0]), 1e-6 * body.mass) << entry.path();
-    const Matrix3d inertia = density->second * unitInertia(body.shapes[0]);
-    EXPECT_LT((body.inertia_Bcm - inertia).norm(), 1e-5 * inertia.norm()) << entry.path();
-    EXPECT_LT(body.p_BBcm.norm(), 1e-12);
+    for (const BodyDescription& body : bodies) {
+      ASSERT_EQ(body.shapes.size(), 1u);
+      const Shape& shape = body.shapes[0];
+      EXPECT_NEAR(body.mass, density->second * volume(shape), 1e-6 * body.mass) << entry.path();
+      EXPECT_TRUE(shape.X_BG.linear().isIdentity(0.0));
+      const Matrix3d inertia = density->second * unitInertia(shape);
+      EXPECT_LT((body.inertia_Bcm - inertia).norm(), 1e-5 * inertia.norm()) << entry.path();
+      EXPECT_LT((body.p_BBcm - shape.X_BG.translation()).norm(), 1e-12);
+    }
+    EXPECT_LT(bodies[0].p_BBcm.norm(), 1e-12);
     EXPECT_NE(xml.find("<visual>"), std::string::npos);
     EXPECT_NE(xml.find("<color"), std::string::npos);
     EXPECT_NE(xml.find(std::to_string(static_cast<int>(density->second)) + " kg/m^3"), std::string::npos);
