@@ -60,9 +60,9 @@ void readJoints(const YamlMap& map, std::vector<BodyDescription>& bodies, Violat
   for (const auto& entry : joints) {
     const std::string name = shownValue(entry.first);
     if (std::find(names.begin(), names.end(), name) != names.end()) continue;
-    violations.add(entry.first, map.path("joints") + "." + name +
-                                    ": unknown joint: expected a movable one of the URDF (" + all +
-                                    "); the nearest is \"" + nearestWord(name, names) + "\"");
+    std::string text = map.path("joints");
+    text.append(".").append(name).append(": unknown joint: expected a movable one of the URDF (").append(all);
+    violations.add(entry.first, text.append("); the nearest is \"").append(nearestWord(name, names)).append("\""));
     known.push_back(name);
   }
   const YamlMap by_name(joints, map.path("joints"), known, violations);

@@ -148,10 +148,10 @@ class BodyReader {
                                                     : "expected at least one collision shape");
       }
       const MassProperties whole = combined(parts_[i]);
-      const std::string violation = massViolation(whole);
-      if (!violation.empty()) {
-        errors_.addLine(urdf_.source + ": " + links + " inertial" +
-                        (body.links.size() > 1 ? " (all together): " : ": ") + violation);
+      if (const std::string violation = massViolation(whole); !violation.empty()) {
+        std::string line = urdf_.source;
+        line.append(": ").append(links).append(" inertial");
+        errors_.addLine(line.append(body.links.size() > 1 ? " (all together): " : ": ").append(violation));
       }
       body.mass = whole.mass;
       body.p_BBcm = whole.centre;
