@@ -3,6 +3,8 @@
 #include <sstream>
 
 #include "geometry/shape.h"
+#include "scene/body_name.h"
+#include "scene/joint_placement.h"
 #include "scene/resource_path.h"
 #include "scene/scene_sections.h"
 #include "scene/urdf_body.h"
@@ -16,33 +18,24 @@ using Eigen::Vector3d;
 
 constexpr double kUnitTolerance = 1e-3;  // of a quaternion's norm; nearer ones are normalised
 
-bool validName(const std::string& name) {
-  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-  if (name.empty() || !letter(name.front())) return false;
-  for (const char c : name) {
-    if (!letter(c) && !(c >= '0' && c <= '9') && c != '_') return false;
-  }
-  return true;
-}
-
-void readName(const YamlMap& map, const SceneResolver& resolver, BodyDescription& body) {
+void readName(const YamlMap& map, const SceneResolver& resolver, std::string& name) {
   map.require("name", "a name for topics and tf");
-  map.read("name", body.name);
-  if (body.name.empty()) return;
-  if (!validName(body.name)) {
-    map.fail("name", "a letter followed by letters, digits or _, because topics and tf frames are named after it");
-  } else if (body.name == "world") {
+  map.read("name", name);
+  if (name.empty()) return;
+  if (!validBodyName(name)) {
+    map.fail("name", kBodyNameRule);
+  } else if (name == "world") {
     map.fail("name", "another name, \"world\" is the tank's own frame");
-  } else if (body.name == kWallsName) {
+  } else if (name == kWallsName) {
     map.fail("name", "another name, \"walls\" is the tank's own in contact.pairs");
-  } else if (const std::string expected = resolver.name_conflict ? resolver.name_conflict(body.name) : "";
+  } else if (const std::string expected = resolver.name_conflict ? resolver.name_conflict(name) : "";
              !expected.empty()) {
     map.fail("name", expected);
   }
 }
 
-void readUrdf(const YamlMap& map, const std::string& folder, const SceneResolver& resolver,
-              const YAML::Node& node, BodyDescription& body, Violations& violations) {
+void readUrdf(const YamlMap& map, const std::string& folder, const SceneResolver& resolver, const YAML::Node& node,
+              std::vector<BodyDescription>& bodies, Violations& violations) {
   if (map.has("urdf") == map.has("urdf_parameter")) {
     const std::string both = map.has("urdf") ? "both are given" : "neither is given";
     violations.add(node, map.path("urdf") + ", urdf_parameter: " + both + ": expected exactly one of them");
@@ -68,7 +61,7 @@ void readUrdf(const YamlMap& map, const std::string& folder, const SceneResolver
     violations.add(map.get(key), map.path(key) + ": value " + error.what());
     return;
   }
-  for (const std::string& line : readUrdfBody(urdf, resolver, body)) {
+  for (const std::string& line : readUrdfBodies(urdf, resolver, bodies)) {
     violations.add(map.get(key), map.path(key) + ": " + line);
   }
 }
@@ -98,7 +91,7 @@ Quaterniond readOrientation(const YAML::Node& node, const std::string& path, Vio
   return Quaterniond(xyzw[3], xyzw[0], xyzw[1], xyzw[2]).normalized();
 }
 
-void readMotion(const YamlMap& map, BodyDescription& body, Violations& violations) {
+void readMotion(const YamlMap& map, bool has_joints, BodyDescription& body, Violations& violations) {
   map.read("material", body.material);
   if (body.material == kWallsName) {
     map.fail("material", "another name, \"walls\" is the tank's own in contact.pairs");
@@ -123,6 +116,9 @@ void readMotion(const YamlMap& map, BodyDescription& body, Violations& violation
   prescribed.read("frequency", body.prescribed.frequency, Range::kNotNegative);
   prescribed.read("phase", body.prescribed.phase, Range::kFinite);
   prescribed.read("in_place", body.prescribed.in_place);
+  if (body.prescribed.in_place && has_joints) {
+    prescribed.fail("in_place", "false for a URDF with movable joints, whose bodies hang on the one that moves");
+  }
   if (!body.prescribed.amplitude.isZero(0.0) && body.prescribed.frequency == 0.0) {
     prescribed.fail("amplitude", "a frequency > 0 beside it");
   }
@@ -130,24 +126,37 @@ void readMotion(const YamlMap& map, BodyDescription& body, Violations& violation
 
 }  // namespace
 
-BodyDescription readBody(const YAML::Node& node, int index, const std::string& folder,
-                         const SceneResolver& resolver, Violations& violations) {
-  BodyDescription body;
+std::vector<BodyDescription> readBody(const YAML::Node& node, int index, int first, const std::string& folder,
+                                      const SceneResolver& resolver, Violations& violations) {
   const YamlMap map(node, "bodies[" + std::to_string(index) + "]",
                     {"name", "urdf", "urdf_parameter", "position", "orientation", "velocity", "angular_velocity",
-                     "motion", "prescribed", "material"},
+                     "motion", "prescribed", "material", "self_collision", "joints"},
                     violations);
-  readName(map, resolver, body);
-  readUrdf(map, folder, resolver, node, body, violations);
+  std::string name;
+  readName(map, resolver, name);
+  std::vector<BodyDescription> bodies(1);
+  const std::size_t violations_before = violations.count();
+  readUrdf(map, folder, resolver, node, bodies, violations);
+  const bool urdf_usable = violations.count() == violations_before;
+  BodyDescription& root = bodies.front();
+  root.name = name;
   Vector3d position = Vector3d::Zero();
   map.read<3>("position", position);
-  body.X_WB.translation() = position;
+  root.X_WB.translation() = position;
   if (map.has("orientation")) {
-    body.X_WB.linear() =
+    root.X_WB.linear() =
         readOrientation(map.get("orientation"), map.path("orientation"), violations).toRotationMatrix();
   }
-  readMotion(map, body, violations);
-  return body;
+  readMotion(map, bodies.size() > 1, root, violations);
+  if (urdf_usable) readJoints(map, bodies, violations);
+  for (std::size_t i = 1; i < bodies.size(); ++i) {
+    BodyDescription& body = bodies[i];
+    body.name = root.name + "/" + body.links.front().name;
+    body.material = root.material;
+    placeOnParent(bodies[body.joint->parent], body);
+  }
+  for (std::size_t i = 1; i < bodies.size(); ++i) bodies[i].joint->parent += first;
+  return bodies;
 }
 
 void checkInsideTank(const BodyDescription& body, const YAML::Node& node, const TankDescription& tank,

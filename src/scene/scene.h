@@ -85,7 +85,8 @@ struct JointServo {
   double damping = 0.0;                                    // N m s/rad, N s/m
 };
 
-// By which a body hangs on another. Units of a revolute joint, then of a prismatic one. A continuous joint is a revolute one without limits.
+// By which a body hangs on another. Units of a revolute joint, then of a prismatic one. A continuous joint is a
+// revolute one without limits.
 struct JointDescription {
   std::string name;                                        // as in the URDF
   JointType type = JointType::kRevolute;

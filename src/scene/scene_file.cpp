@@ -1,6 +1,8 @@
 #include "scene/scene_file.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <vector>
 
@@ -45,18 +47,21 @@ void readBodies(const YamlMap& map, const std::string& folder, const SceneResolv
   std::map<std::string, std::size_t> first_use;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const std::size_t violations_before = violations.count();
-    BodyDescription body = readBody(bodies[i], static_cast<int>(i), folder, resolver, violations);
-    const auto [first, is_new] = first_use.emplace(body.name, i);
-    if (!is_new && !body.name.empty()) {
-      violations.add(bodies[i], "bodies[" + std::to_string(i) + "].name: value " + body.name +
+    std::vector<BodyDescription> read =
+        readBody(bodies[i], static_cast<int>(i), static_cast<int>(scene.bodies.size()), folder, resolver, violations);
+    // Those beyond joints are called after it.
+    const std::string& name = read.front().name;
+    const auto [first, is_new] = first_use.emplace(name, i);
+    if (!is_new && !name.empty()) {
+      violations.add(bodies[i], "bodies[" + std::to_string(i) + "].name: value " + name +
                                     ": expected a name of its own, bodies[" + std::to_string(first->second) +
                                     "] has it already");
     }
     // The pose may be a default that stands in for a wrong value.
     if (tank_usable && violations.count() == violations_before) {
-      checkInsideTank(body, bodies[i], scene.tank, violations);
+      for (const BodyDescription& body : read) checkInsideTank(body, bodies[i], scene.tank, violations);
     }
-    scene.bodies.push_back(std::move(body));
+    std::move(read.begin(), read.end(), std::back_inserter(scene.bodies));
   }
 }
 

@@ -1,5 +1,9 @@
 #include "scene/solid_body.h"
 
+#include <utility>
+
+#include "scene/joint_placement.h"
+
 namespace monolith {
 namespace {
 
@@ -47,6 +51,19 @@ BodyDescription cylinderBody(const std::string& name, double radius, double leng
   const double across = (3.0 * radius * radius + length * length) / 12.0;
   body.inertia_Bcm = body.mass * Eigen::Vector3d(across, across, 0.5 * radius * radius).asDiagonal();
   return body;
+}
+
+BodyDescription& hangOn(std::vector<BodyDescription>& bodies, int parent, BodyDescription body,
+                        JointDescription joint) {
+  int root = parent;
+  while (bodies[root].joint) root = bodies[root].joint->parent;
+  body.name = bodies[root].name + "/" + body.name;
+  body.motion = BodyMotion::kFree;
+  joint.parent = parent;
+  body.joint = std::move(joint);
+  placeOnParent(bodies[parent], body);
+  bodies.push_back(std::move(body));
+  return bodies.back();
 }
 
 }  // namespace monolith

@@ -61,23 +61,29 @@ Matrix3d unitInertia(const Shape& shape) {
 
 TEST(ShippedUrdfs, MassAndInertiaAreThoseOfTheDensity) {
   const std::map<std::string, double> densities = {
-      {"steel_sphere", 7800}, {"aluminium_box", 2700}, {"torus", 1500},
-      {"light_ball", 100},    {"wood_cylinder", 900},  {"tencate_sphere", 1120},
-      {"stack_bottom", 1500}, {"stack_middle", 2500},  {"stack_top", 8000}};
+      {"steel_sphere", 7800}, {"aluminium_box", 2700},  {"torus", 1500},        {"light_ball", 100},
+      {"wood_cylinder", 900}, {"tencate_sphere", 1120}, {"stack_bottom", 1500}, {"stack_middle", 2500},
+      {"stack_top", 8000},    {"two_link_arm", 2700}};
   std::size_t found = 0;
   for (const auto& entry : fs::directory_iterator(kSource / "urdf")) {
     if (entry.path().extension() != ".urdf") continue;
     const auto density = densities.find(entry.path().stem().string());
     ASSERT_NE(density, densities.end()) << entry.path() << " has no density in this test";
-    BodyDescription body;
+    std::vector<BodyDescription> bodies;
     const std::string xml = readTextFile(entry.path().string());
-    const auto errors = readUrdfBody({entry.path().string(), (kSource / "urdf").string(), xml}, SceneResolver(), body);
+    const auto errors =
+        readUrdfBodies({entry.path().string(), (kSource / "urdf").string(), xml}, SceneResolver(), bodies);
     ASSERT_TRUE(errors.empty()) << errors.front();
-    ASSERT_EQ(body.shapes.size(), 1u);
-    EXPECT_NEAR(body.mass, density->second * volume(body.shapes[0]), 1e-6 * body.mass) << entry.path();
-    const Matrix3d inertia = density->second * unitInertia(body.shapes[0]);
-    EXPECT_LT((body.inertia_Bcm - inertia).norm(), 1e-5 * inertia.norm()) << entry.path();
-    EXPECT_LT(body.p_BBcm.norm(), 1e-12);
+    for (const BodyDescription& body : bodies) {
+      ASSERT_EQ(body.shapes.size(), 1u);
+      const Shape& shape = body.shapes[0];
+      EXPECT_NEAR(body.mass, density->second * volume(shape), 1e-6 * body.mass) << entry.path();
+      EXPECT_TRUE(shape.X_BG.linear().isIdentity(0.0));
+      const Matrix3d inertia = density->second * unitInertia(shape);
+      EXPECT_LT((body.inertia_Bcm - inertia).norm(), 1e-5 * inertia.norm()) << entry.path();
+      EXPECT_LT((body.p_BBcm - shape.X_BG.translation()).norm(), 1e-12);
+    }
+    EXPECT_LT(bodies[0].p_BBcm.norm(), 1e-12);
     EXPECT_NE(xml.find("<visual>"), std::string::npos);
     EXPECT_NE(xml.find("<color"), std::string::npos);
     EXPECT_NE(xml.find(std::to_string(static_cast<int>(density->second)) + " kg/m^3"), std::string::npos);
@@ -86,23 +92,27 @@ TEST(ShippedUrdfs, MassAndInertiaAreThoseOfTheDensity) {
   EXPECT_EQ(found, densities.size());
 }
 
+void expectNoOverlap(const Scene& scene) {
+  std::vector<std::shared_ptr<const SignedDistance>> fields;
+  for (const BodyDescription& body : scene.bodies) fields.push_back(makeSignedDistance(body.shapes, 0.005));
+  std::mt19937 engine(6);
+  for (int i = 0; i < 200000; ++i) {
+    Vector3d p_W = scene.tank.origin;
+    for (int axis = 0; axis < 3; ++axis) p_W[axis] += scene.tank.size[axis] * (engine() / 4294967296.0);
+    int inside = 0;
+    for (std::size_t b = 0; b < fields.size(); ++b) {
+      inside += fields[b]->distance(scene.bodies[b].X_WB.inverse() * p_W) < 0.0;
+    }
+    ASSERT_LE(inside, 1) << scene.source << " at " << p_W.transpose();
+  }
+}
+
 TEST(ShippedScenes, AllLoadWithoutOverlap) {
   int found = 0;
   for (const auto& entry : fs::directory_iterator(kSource / "config/scenes")) {
     const Scene scene = loadScene(entry.path().string(), SceneResolver());
     EXPECT_EQ(scene.name, entry.path().stem().string());
-    std::vector<std::shared_ptr<const SignedDistance>> fields;
-    for (const BodyDescription& body : scene.bodies) fields.push_back(makeSignedDistance(body.shapes, 0.005));
-    std::mt19937 engine(6);
-    for (int i = 0; i < 200000; ++i) {
-      Vector3d p_W = scene.tank.origin;
-      for (int axis = 0; axis < 3; ++axis) p_W[axis] += scene.tank.size[axis] * (engine() / 4294967296.0);
-      int inside = 0;
-      for (std::size_t b = 0; b < fields.size(); ++b) {
-        inside += fields[b]->distance(scene.bodies[b].X_WB.inverse() * p_W) < 0.0;
-      }
-      ASSERT_LE(inside, 1) << entry.path() << " at " << p_W.transpose();
-    }
+    expectNoOverlap(scene);
     ++found;
   }
   EXPECT_GE(found, 3);
@@ -155,7 +165,10 @@ TEST(ShippedScenes, StackIsUnderLiquidWithTheHeaviestOnTop) {
 TEST(SceneTemplate, LoadsAndNamesEveryKey) {
   const std::string file = (kSource / "config/scene_template.yaml").string();
   const Scene scene = loadScene(file, SceneResolver());
-  EXPECT_EQ(scene.bodies.size(), 2u);
+  std::vector<std::string> names;
+  for (const BodyDescription& body : scene.bodies) names.push_back(body.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"ball", "paddle", "arm", "arm/upper", "arm/lower"}));
+  expectNoOverlap(scene);
   const std::string text = readTextFile(file);
   for (const char* key : {"size:",
                           "origin:",
@@ -195,6 +208,11 @@ TEST(SceneTemplate, LoadsAndNamesEveryKey) {
                           "discretisation:",
                           "time_stepping:",
                           "motion:",
+                          "self_collision:",
+                          "joints:",
+                          "stiffness:",
+                          "damping:",
+                          "rate:",
                           "twist:",
                           "amplitude:",
                           "frequency:",
@@ -232,14 +250,21 @@ TEST(SceneTemplate, DefaultsItStatesAreThoseOfTheCode) {
       "tank: {size: [0.4, 0.3, 0.3], origin: [-0.2, -0.15, -0.1], cell_width: 0.02}\nbodies:\n  - name: ball\n    "
       "urdf: " +
       (kSource / "urdf/steel_sphere.urdf").string() + "\n";
+  const auto arm = [](const std::string& keys) {
+    return "  - name: arm\n    urdf: " + (kSource / "urdf/two_link_arm.urdf").string() +
+           "\n    position: [0, 0, 0.18]\n    " + keys + "\n";
+  };
   const std::string friction = statedDefault(text, "  friction");  // and restitution
-  const std::string all = least + lines("    ", {"position", "velocity", "angular_velocity", "motion"}) +
-                          "    orientation: {" + statedDefault(text, "    orientation") + "}\n" +
-                          lines("", {"gravity", "time_step"}) + "contact: {friction: " + friction +
-                          ", restitution: " + friction + "}\nliquid:\n" +
-                          lines("  ", {"density", "dynamic_viscosity", "fill_level"}) + "solver:\n" +
-                          lines("  ", {"name", "coupling", "discretisation", "time_stepping", "tolerance",
-                                       "maximum_iterations", "threads", "cfl"});
+  const std::string all =
+      least + lines("    ", {"position", "velocity", "angular_velocity", "motion"}) + "    orientation: {" +
+      statedDefault(text, "    orientation") + "}\n" +
+      arm("self_collision: " + statedDefault(text, "    self_collision") + "\n    joints:\n      shoulder:\n" +
+          lines("        ", {"position", "velocity", "stiffness", "damping"}) + "      elbow:\n        prescribed:\n" +
+          lines("          ", {"rate", "amplitude", "frequency", "phase"})) +
+      lines("", {"gravity", "time_step"}) + "contact: {friction: " + friction + ", restitution: " + friction +
+      "}\nliquid:\n" + lines("  ", {"density", "dynamic_viscosity", "fill_level"}) + "solver:\n" +
+      lines("  ", {"name", "coupling", "discretisation", "time_stepping", "tolerance", "maximum_iterations", "threads",
+                   "cfl"});
   const TemporaryFolder folder;
   const auto load = [&](const std::string& yaml) {
     return loadScene(folder.write("scene.yaml", yaml), SceneResolver());
@@ -247,7 +272,7 @@ TEST(SceneTemplate, DefaultsItStatesAreThoseOfTheCode) {
   SCOPED_TRACE(all);
   Scene stated, omitted;
   ASSERT_NO_THROW(stated = load(all));
-  omitted = load(least);
+  omitted = load(least + arm("joints: {elbow: {prescribed: {}}}"));
   EXPECT_EQ(stated.liquid.density, omitted.liquid.density);
   EXPECT_EQ(stated.liquid.dynamic_viscosity, omitted.liquid.dynamic_viscosity);
   EXPECT_EQ(stated.liquid.fill_level, omitted.liquid.fill_level);
@@ -268,6 +293,19 @@ TEST(SceneTemplate, DefaultsItStatesAreThoseOfTheCode) {
   EXPECT_EQ(told.velocity, untold.velocity);
   EXPECT_EQ(told.angular_velocity, untold.angular_velocity);
   EXPECT_EQ(told.motion, untold.motion);
+  ASSERT_EQ(stated.bodies.size(), omitted.bodies.size());
+  EXPECT_EQ(stated.bodies.at(1).self_collision, omitted.bodies.at(1).self_collision);
+  const JointDescription &shoulder = *stated.bodies.at(2).joint, &untold_shoulder = *omitted.bodies.at(2).joint;
+  EXPECT_EQ(shoulder.position, untold_shoulder.position);
+  EXPECT_EQ(shoulder.velocity, untold_shoulder.velocity);
+  EXPECT_EQ(shoulder.servo.stiffness, untold_shoulder.servo.stiffness);
+  EXPECT_EQ(shoulder.servo.damping, untold_shoulder.servo.damping);
+  const PrescribedJointMotion &elbow = *stated.bodies.at(3).joint->prescribed,
+                              &untold_elbow = *omitted.bodies.at(3).joint->prescribed;
+  EXPECT_EQ(elbow.rate, untold_elbow.rate);
+  EXPECT_EQ(elbow.amplitude, untold_elbow.amplitude);
+  EXPECT_EQ(elbow.frequency, untold_elbow.frequency);
+  EXPECT_EQ(elbow.phase, untold_elbow.phase);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// URDF texts -> bodies, and what is refused.
+// URDF texts -> one body, and what is refused; several bodies are in urdf_joint_test.cpp.
 
 #include "scene/urdf_body.h"
 
@@ -34,15 +34,17 @@ std::string inertial(double mass, const std::string& moments, const std::string&
 }
 
 struct Result {
-  BodyDescription body;
+  BodyDescription body;  // of the root link
   std::string errors;
 };
 
 Result read(const std::string& xml, const std::string& folder = "") {
   Result result;
-  for (const std::string& line : readUrdfBody({"test.urdf", folder, xml}, SceneResolver(), result.body)) {
+  std::vector<BodyDescription> bodies;
+  for (const std::string& line : readUrdfBodies({"test.urdf", folder, xml}, SceneResolver(), bodies)) {
     result.errors += line + "\n";
   }
+  result.body = bodies.at(0);
   return result;
 }
 
@@ -96,13 +98,6 @@ TEST(UrdfBody, ReadsEveryPrimitiveAndLinksWithoutInertial) {
   EXPECT_DOUBLE_EQ(result.body.shapes[1].length, 0.7);
   EXPECT_EQ(result.body.shapes[2].box_size, Vector3d(1, 2, 3));
   EXPECT_DOUBLE_EQ(result.body.mass, 2.0);
-}
-
-TEST(UrdfBody, MovableJointsAreRefusedByNameAndType) {
-  for (const std::string type : {"revolute", "continuous", "prismatic", "floating", "planar"}) {
-    expectRefused(robot(link("a", std::string(kInertial) + kBall) + link("b", kInertial) + joint(type)),
-                  {"test.urdf", "\"j\"", "(" + type + ")", "use type fixed"});
-  }
 }
 
 TEST(UrdfBody, WrongMassesAndInertiasAreRefused) {
@@ -214,7 +209,7 @@ TEST(UrdfBody, SeveralViolationsAreReportedTogether) {
   const Result result =
       read(robot(link("a", std::string(kInertial) + R"(<collision><geometry><sphere radius="-1"/></geometry></collision>
       <collision><geometry><box size="0 1 1"/></geometry></collision>)") +
-                 link("b", "") + joint("revolute")));
+                 link("b", "") + joint("floating")));
   EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 3);
 }
 
