@@ -99,7 +99,7 @@ std::string metres(double length) {
 
 std::string describeOverlaps(const std::vector<RigidBody>& bodies, const TankWalls& walls, double tolerance, int only) {
   const std::vector<int> roots = rootsOf(bodies);
-  const auto counts = [&](std::size_t body) { return only < 0 || roots[body] == roots[only]; };
+  const auto counts = [&](std::size_t body) { return only < 0 || roots[body] == roots[static_cast<std::size_t>(only)]; };
   std::map<const TriangleMesh*, std::shared_ptr<const MeshSurface>> surfaces;
   std::vector<std::vector<Solid>> solids(bodies.size());
   std::vector<Eigen::AlignedBox3d> boxes(bodies.size());

@@ -385,16 +385,43 @@ std::vector<JointState> Simulation::jointStates() const {
   return out;
 }
 
-void Simulation::setJointCommand(int body, const JointCommand& command) {
-  const std::vector<RigidBody>& bodies = impl_->state.bodies;
-  if (body < 0 || body >= static_cast<int>(bodies.size()) || !bodies[body].joint || bodies[body].joint->prescribed) {
-    throw std::invalid_argument("joint of body index " + std::to_string(body) +
-                                ": expected a body that hangs on another by a joint whose motion is not prescribed");
+void Simulation::Impl::requireJoint(int body) const {
+  const std::vector<RigidBody>& bodies = state.bodies;
+  if (body >= 0 && body < static_cast<int>(bodies.size()) && bodies[body].joint && !bodies[body].joint->prescribed) {
+    return;
   }
+  throw std::invalid_argument("joint of body index " + std::to_string(body) +
+                              ": expected a body that hangs on another by a joint whose motion is not prescribed");
+}
+
+void Simulation::setJointCommand(int body, const JointCommand& command) {
+  impl_->requireJoint(body);
+  const std::vector<RigidBody>& bodies = impl_->state.bodies;
   if (!std::isfinite(command.effort) || !std::isfinite(command.position) || !std::isfinite(command.velocity)) {
     throw std::invalid_argument("command for joint '" + bodies[body].joint->name + "': expected finite numbers");
   }
   impl_->commands[body] = command;
+}
+
+// Takes the state that was given to `changed`, and to what hangs on it.
+void Simulation::Impl::setBodies(std::vector<RigidBody> bodies, int changed) {
+  moveAssemblies(bodies);
+  const std::string& name = bodies[changed].name;
+  for (const RigidBody& body : bodies) {
+    if (body.p_WBcm.allFinite() && body.twist.allFinite() && std::isfinite(kineticEnergy(body))) continue;
+    throw std::invalid_argument("state of '" + body.name + "': centre of mass at " + shownVector(body.p_WBcm) +
+                                " m, its velocity " + shownVector(body.twist.head<3>()) +
+                                " m/s: expected finite numbers, the energy too");
+  }
+  const std::string overlaps = describeOverlaps(bodies, walls, kOverlapTolerance * grid.h, changed);
+  if (!overlaps.empty()) {
+    throw std::invalid_argument("state of '" + name +
+                                "': expected a pose inside the tank and clear of other bodies:\n" + overlaps);
+  }
+  state.bodies = std::move(bodies);
+  state.euler_steps = kStepsAfterSet;
+  prepareGeometry();
+  measureState(report);
 }
 
 void Simulation::setBodyState(int body, const Eigen::Isometry3d& X_WB, const Eigen::Vector3d& velocity,
@@ -420,21 +447,23 @@ void Simulation::setBodyState(int body, const Eigen::Isometry3d& X_WB, const Eig
   moved.p_WBcm = m.walls.imageInside(X_WB.translation() + to_centre);
   moved.twist.head<3>() = velocity + angular_velocity.cross(to_centre);
   moved.twist.tail<3>() = angular_velocity;
-  if (!moved.p_WBcm.allFinite() || !moved.twist.allFinite() || !std::isfinite(kineticEnergy(moved))) {
-    throw std::invalid_argument("state of '" + name + "': centre of mass at " + shownVector(moved.p_WBcm) +
-                                " m, its velocity " + shownVector(moved.twist.head<3>()) +
-                                " m/s: expected finite numbers, the energy too");
+  m.setBodies(std::move(bodies), body);
+}
+
+void Simulation::setJointState(int body, double position, double velocity) {
+  Impl& m = *impl_;
+  m.requireJoint(body);
+  std::vector<RigidBody> bodies = m.state.bodies;
+  const JointDescription& joint = *bodies[body].joint;
+  if (!std::isfinite(position) || !std::isfinite(velocity) || position < joint.lower || position > joint.upper) {
+    std::ostringstream text;
+    text << "state of joint '" << joint.name << "': position " << position << ", velocity " << velocity
+         << ": expected finite numbers, the position from " << joint.lower << " to " << joint.upper;
+    throw std::invalid_argument(text.str());
   }
-  m.moveAssemblies(bodies);
-  const std::string overlaps = describeOverlaps(bodies, m.walls, kOverlapTolerance * m.grid.h, body);
-  if (!overlaps.empty()) {
-    throw std::invalid_argument("state of '" + name +
-                                "': expected a pose inside the tank and clear of other bodies:\n" + overlaps);
-  }
-  m.state.bodies = bodies;
-  m.state.euler_steps = kStepsAfterSet;
-  m.prepareGeometry();
-  m.measureState(m.report);
+  bodies[body].joint_position = position;
+  bodies[body].joint_velocity = velocity;
+  m.setBodies(std::move(bodies), body);
 }
 
 void Simulation::setLiquidVelocity(const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& velocity) {

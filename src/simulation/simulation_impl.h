@@ -77,6 +77,8 @@ struct Simulation::Impl {
   void moveLiquid(const StepWeights& w, StepReport& report);
   void enterImages();
   void moveAssemblies(std::vector<RigidBody>& bodies) const;
+  void setBodies(std::vector<RigidBody> bodies, int changed);
+  void requireJoint(int body) const;
   void prepareGeometry();
   void tellDepartures(StepReport& report);
   void measureLiquidMotion(StepReport& report);
