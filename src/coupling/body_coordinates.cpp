@@ -1,5 +1,7 @@
 #include "coupling/body_coordinates.h"
 
+#include <map>
+
 #include "rigid/articulation.h"
 
 namespace monolith {
@@ -18,14 +20,48 @@ void addBlock(Eigen::Index row, Eigen::Index column, const Eigen::MatrixXd& bloc
 
 bool hasUnknown(const RigidBody& body) { return body.joint && !body.joint->prescribed; }
 
+// v = S q and P v = q of the bodies of an assembly; q: the root's twist where that is free, then the joints'
+// velocities.
+struct JointVelocities {
+  std::vector<Eigen::MatrixXd> S, P;  // of each body: 6 x q, q x 6
+  std::vector<Eigen::Index> joint;    // q of its joint, or -1
+
+  JointVelocities(const std::vector<RigidBody>& bodies, const BodyCoordinates::Assembly& assembly) {
+    std::map<int, std::size_t> at;
+    Eigen::Index next = assembly.adrift ? 6 : 0;
+    for (std::size_t i = 0; i < assembly.bodies.size(); ++i) {
+      const auto b = static_cast<std::size_t>(assembly.bodies[i]);
+      at[assembly.bodies[i]] = i;
+      S.emplace_back(Eigen::MatrixXd::Zero(6, assembly.count));
+      P.emplace_back(Eigen::MatrixXd::Zero(assembly.count, 6));
+      joint.push_back(hasUnknown(bodies[b]) ? next++ : -1);
+      if (!bodies[b].joint) {
+        if (!assembly.adrift) continue;
+        S[i].leftCols<6>().setIdentity();
+        P[i].topRows<6>().setIdentity();
+        continue;
+      }
+      const std::size_t parent = at.at(bodies[b].joint->parent);
+      const Matrix6d X = carryMatrix(bodies, b);
+      S[i] = X * S[parent];
+      if (joint[i] < 0) continue;
+      S[i].col(joint[i]) += jointTwist(bodies[b]);
+      const Vector6d row = monolith::jointRow(bodies[b]);
+      P[i].row(joint[i]) += row.transpose();
+      P[parent].row(joint[i]) -= row.transpose() * X;
+    }
+  }
+};
+
 }  // namespace
 
-void BodyCoordinates::set(const std::vector<RigidBody>& bodies) {
+void BodyCoordinates::set(const std::vector<RigidBody>& bodies, const std::vector<Vector6d>& scale,
+                          const std::vector<double>& resistance) {
   const std::vector<int> roots = rootsOf(bodies);
   std::vector<std::vector<int>> members(bodies.size());
   for (std::size_t b = 0; b < bodies.size(); ++b) members[roots[b]].push_back(static_cast<int>(b));
   free_.clear();
-  joint_.assign(bodies.size(), -1);
+  joint_.assign(bodies.size(), {});
   assemblies_.clear();
   std::vector<Eigen::Index> place(bodies.size(), -1);  // among the free ones
   for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -40,35 +76,40 @@ void BodyCoordinates::set(const std::vector<RigidBody>& bodies) {
     assembly.first = size;
     assembly.bodies = members[root];
     assembly.adrift = bodies[root].motion == BodyMotion::kFree;
-    if (assembly.adrift) size += 6;
-    for (const int b : members[root]) {
-      if (hasUnknown(bodies[b])) joint_[b] = size++;
-    }
-    assembly.count = size - assembly.first;
+    assembly.count = assembly.adrift ? 6 : 0;
+    for (const int b : members[root]) assembly.count += hasUnknown(bodies[b]) ? 1 : 0;
+    size += assembly.count;
     if (assembly.count > 0) assemblies_.push_back(assembly);
   }
   std::vector<Triplet> S, P;
-  std::vector<Eigen::MatrixXd> columns(bodies.size());  // of S, of an assembly's unknowns
   for (const Assembly& assembly : assemblies_) {
-    for (const int b : assembly.bodies) {
-      Eigen::MatrixXd& own = columns[b];
-      if (!bodies[b].joint) {
-        own = Eigen::MatrixXd::Zero(6, assembly.count);
-        if (!assembly.adrift) continue;
-        own.leftCols<6>().setIdentity();
-        addBlock(assembly.first, 6 * place[b], Matrix6d::Identity(), P);
-      } else {
-        const int parent = bodies[b].joint->parent;
-        const Matrix6d X = carryMatrix(bodies, b);
-        own = X * columns[parent];
-        if (joint_[b] >= 0) {
-          own.col(joint_[b] - assembly.first) += jointTwist(bodies[b]);
-          const Eigen::RowVectorXd row = jointRow(bodies[b]).transpose();
-          addBlock(joint_[b], 6 * place[b], row, P);
-          if (place[parent] >= 0) addBlock(joint_[b], 6 * place[parent], -row * X, P);
-        }
+    if (assembly.bodies.size() == 1) {
+      addBlock(6 * place[assembly.bodies[0]], assembly.first, Matrix6d::Identity(), S);
+      addBlock(assembly.first, 6 * place[assembly.bodies[0]], Matrix6d::Identity(), P);
+      continue;
+    }
+    const JointVelocities q(bodies, assembly);
+    Eigen::MatrixXd weight = Eigen::MatrixXd::Zero(assembly.count, assembly.count);
+    for (std::size_t i = 0; i < assembly.bodies.size(); ++i) {
+      const int b = assembly.bodies[i];
+      if (place[b] < 0) continue;
+      const Vector6d of = scale.empty() ? Vector6d(Vector6d::Ones()) : scale[place[b]];
+      weight += q.S[i].transpose() * of.cwiseAbs2().asDiagonal() * q.S[i];
+      if (q.joint[i] >= 0 && !resistance.empty()) weight(q.joint[i], q.joint[i]) += resistance[b];
+    }
+    const Eigen::MatrixXd L = weight.llt().matrixL();
+    const Eigen::MatrixXd to_q =
+        L.transpose().triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(assembly.count, assembly.count));
+    for (std::size_t i = 0; i < assembly.bodies.size(); ++i) {
+      const int b = assembly.bodies[i];
+      if (place[b] < 0) continue;
+      addBlock(6 * place[b], assembly.first, q.S[i] * to_q, S);
+      addBlock(assembly.first, 6 * place[b], L.transpose() * q.P[i], P);
+      if (q.joint[i] < 0) continue;
+      joint_[b].resize(size);
+      for (Eigen::Index j = 0; j < assembly.count; ++j) {
+        if (to_q(q.joint[i], j) != 0.0) joint_[b].insert(assembly.first + j) = to_q(q.joint[i], j);
       }
-      addBlock(6 * place[b], assembly.first, own, S);
     }
   }
   const auto twists = static_cast<Eigen::Index>(6 * free_.size());

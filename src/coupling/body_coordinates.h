@@ -1,11 +1,16 @@
 #pragma once
-// The unknowns q of the bodies' motion: the twist of a free body, and of one that hangs on another the velocity of its
-// joint (rigid/articulation.h). With v the twists of the n free bodies, one that hangs on another being free as well,
+// The unknowns y of the bodies' motion: the twist of a free body; of bodies that joints connect as many as the
+// velocities q of their joints and, where nothing holds it, the twist of the root (rigid/articulation.h), mixed. With v
+// the twists of the n free bodies, among which those that hang on others count,
 //
-//   v = S q + v_0,   P v = q + P v_0,   P S = 1        S: 6n x q, v_0: what prescribed motions bring
+//   v = S y + v_0,   P v = y + P v_0,   P S = 1        S: 6n x y, v_0: what prescribed motions bring
 //
 // so that joints hold exactly, whichever way the step is solved, and the system is that of the free bodies between S^T
 // and S. Forces on the bodies become S^T f; P^T g are forces f of S^T f = g. Without joints S is the identity.
+//
+// Mixed: y = L^T q with L L^T = S_q^T diag(scale^2) S_q + R, scale the one of each twist (step_problem.h) and R what
+// resists the joints' motion. A joint between light and heavy bodies is easy to move while the heavy one stays, as hard
+// as that one while the others do: errors of q would not tell which.
 
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
@@ -17,14 +22,17 @@ namespace monolith {
 
 class BodyCoordinates {
  public:
-  // Bodies that joints connect. Their unknowns follow each other: of the root, where that is free, its twist.
+  // Bodies that joints connect, or one alone. Their unknowns follow each other.
   struct Assembly {
     Eigen::Index first = 0, count = 0;
     std::vector<int> bodies;  // among all
     bool adrift = true;       // no body of it is held
   };
 
-  void set(const std::vector<RigidBody>& bodies);
+  // scale: of the twists of the free bodies; resistance: of all bodies' joints, impulse by velocity in the units of
+  // scale^2, or empty. Without scales as if all were 1.
+  void set(const std::vector<RigidBody>& bodies, const std::vector<Vector6d>& scale = {},
+           const std::vector<double>& resistance = {});
 
   Eigen::Index size() const { return S_.cols(); }
   std::size_t bodies() const { return joint_.size(); }
@@ -32,12 +40,13 @@ class BodyCoordinates {
   const Eigen::SparseMatrix<double>& P() const { return P_; }
   // Of free bodies, but for those whose motion is given altogether.
   const std::vector<Assembly>& assemblies() const { return assemblies_; }
-  // Unknown of body b's joint; -1: none.
-  Eigen::Index ofJoint(std::size_t b) const { return joint_[b]; }
+  // Whether body b has a joint that is free to move, and then its velocity: q_b = row . y.
+  bool hasJoint(std::size_t b) const { return joint_[b].size() > 0; }
+  const Eigen::SparseVector<double>& jointRow(std::size_t b) const { return joint_[b]; }
 
   // Twists of, and impulses on, all bodies; only those of free bodies count and are set.
   Eigen::VectorXd gatherMotion(const std::vector<Vector6d>& all) const { return P_ * stack(all); }
-  void scatterMotion(const Eigen::VectorXd& q, std::vector<Vector6d>& all) const { unstack(S_ * q, all); }
+  void scatterMotion(const Eigen::VectorXd& y, std::vector<Vector6d>& all) const { unstack(S_ * y, all); }
   Eigen::VectorXd gatherForces(const std::vector<Vector6d>& all) const { return S_.transpose() * stack(all); }
   void scatterForces(const Eigen::VectorXd& f, std::vector<Vector6d>& all) const { unstack(P_.transpose() * f, all); }
 
@@ -48,8 +57,8 @@ class BodyCoordinates {
   Eigen::VectorXd stack(const std::vector<Vector6d>& all) const;
   void unstack(const Eigen::VectorXd& v, std::vector<Vector6d>& all) const;
 
-  std::vector<int> free_;            // bodies
-  std::vector<Eigen::Index> joint_;  // of all bodies
+  std::vector<int> free_;                           // bodies
+  std::vector<Eigen::SparseVector<double>> joint_;  // rows, of all bodies; empty without an unknown
   std::vector<Assembly> assemblies_;
   Eigen::SparseMatrix<double> S_, P_;
 };

@@ -28,9 +28,7 @@ Eigen::Matrix<double, 3, 2> tangentBasis(const Eigen::Vector3d& n) {
 }
 
 // m/s, that a gap (m) lets its contact close with.
-double gapBias(double gap, double dt) {
-  return gap < 0.0 ? kRecovery * gap / std::max(dt, kRecoveryTime) : gap / dt;
-}
+double gapBias(double gap, double dt) { return gap < 0.0 ? kRecovery * gap / std::max(dt, kRecoveryTime) : gap / dt; }
 
 }  // namespace
 
@@ -82,7 +80,7 @@ ContactRows buildContactRows(const StepProblem& problem, const std::vector<Conta
   for (std::size_t i = 0; i < stops.size(); ++i) {
     const auto c = static_cast<Eigen::Index>(contacts.size() + i);
     const JointStop& stop = stops[i];
-    out.J(c, problem.coordinates.ofJoint(stop.body)) = stop.sign * stop.radius;
+    out.J.row(c) = stop.sign * stop.radius * Eigen::RowVectorXd(problem.coordinates.jointRow(stop.body).transpose());
     out.bias[c] = stop.radius * gapBias(stop.gap, problem.dt);
     out.pair.push_back(static_cast<int>(pairs.size() + i));
   }

@@ -133,7 +133,7 @@ void CoupledSystem::setJointResistance(const std::vector<double>& resistance) {
 
 void CoupledSystem::changeJointResistance(const std::vector<double>& resistance) {
   impl_->problem.joint_resistance = resistance;
-  impl_->problem.setUnknownScales();
+  impl_->problem.setUnknowns();
   // Where viscosity varies, that is to come.
   if (impl_->problem.cell_viscosity.empty()) impl_->solver->prepare(impl_->problem);
 }
@@ -184,10 +184,9 @@ CoupledReport CoupledSystem::Impl::solve(const std::vector<Contact>& contacts, c
     if (p.free_index[b] < 0) x.bodies[b] = p.given[b];
   }
 
-  const ContactRows rows =
-      buildContactRows(p, contacts, laws, stops, kRestingSteps * gravity.norm() * p.dt);
+  const ContactRows rows = buildContactRows(p, contacts, laws, stops, kRestingSteps * gravity.norm() * p.dt);
   Eigen::VectorXd r = warmStart(p, rows, contacts, state.contact_forces);
-  CoupledReport report = rows.count() == 0                       ? solver->solve(rhs, options, x)
+  CoupledReport report = rows.count() == 0                      ? solver->solve(rhs, options, x)
                          : coupling == CouplingName::kIterative ? solveIteratively(*solver, p, rhs, rows, options, x, r)
                                                                 : solver->solveWithContacts(rhs, rows, options, x, r);
   const bool converged = report.status == SolveStatus::kConverged;

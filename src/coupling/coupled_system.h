@@ -56,11 +56,13 @@ class CoupledSystem {
   double viscousChange(const CoupledState& solution, const ViscosityField& next);
 
   // free_velocity: u*, gravity included; used up, only its memory is given back. free_twists: v* of free bodies, the
-  // prescribed twist of the others. laws: one per contact. stops: ends of joints' ranges. Gravity (m/s^2) is what acts on the liquid that sticks to
-  // bodies. Where the report does not say that it converged, the fields of the state are not those of any solution.
+  // prescribed twist of the others. laws: one per contact. stops: ends of joints' ranges. Gravity (m/s^2) is what acts
+  // on the liquid that sticks to bodies. Where the report does not say that it converged, the fields of the state are
+  // not those of any solution.
   [[nodiscard]] CoupledReport solve(FaceField<double>& free_velocity, const std::vector<Vector6d>& free_twists,
                                     const std::vector<Contact>& contacts, const std::vector<ContactLaw>& laws,
-                                    const std::vector<JointStop>& stops, const Eigen::Vector3d& gravity, const CoupledOptions& options, CoupledState& state);
+                                    const std::vector<JointStop>& stops, const Eigen::Vector3d& gravity,
+                                    const CoupledOptions& options, CoupledState& state);
 
   const StepProblem& problem() const;
   // Kinetic energy (J) and momentum (kg m/s) of the liquid that sticks to the bodies, when these have `twists`.

@@ -115,7 +115,8 @@ CoupledReport FastSolver::solveWithContacts(StepVector& rhs_fields, const Contac
   PackedSystem& system = m.system;
   system.updateSchur();
   BorderedVector rhs = system.forces(rhs_fields), x = system.motion(x_fields);
-  double rhs_norm = std::hypot(rhs.velocity_norm, rhs.pressure_norm, bodiesNorm(p, p.coordinates.gatherForces(rhs_fields.bodies)));
+  double rhs_norm =
+      std::hypot(rhs.velocity_norm, rhs.pressure_norm, bodiesNorm(p, p.coordinates.gatherForces(rhs_fields.bodies)));
   if (!std::isfinite(rhs_norm)) return m.notConverged(report, "what acts on liquid and bodies is too large a number");
   const Eigen::Index count = contacts.count();
 

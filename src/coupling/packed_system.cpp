@@ -79,8 +79,8 @@ void PackedSystem::updateSchur() {
                     p.viscous_number <= kStaleNumber * resistance_number_ &&
                     resistance_number_ <= kStaleNumber * p.viscous_number && !stale_;
   if (!same) {
-    resistance_ =
-        scale_.asDiagonal() * BodySchur::resistance(lattice(), columns_single_, twists_of_, preconditioner_) * scale_.asDiagonal();
+    resistance_ = scale_.asDiagonal() * BodySchur::resistance(lattice(), columns_single_, twists_of_, preconditioner_) *
+                  scale_.asDiagonal();
     resistance_of_ = p.free;
     resistance_number_ = p.viscous_number;
     fresh_cost_ = lost_ = 0.0;
@@ -144,7 +144,7 @@ BorderedVector PackedSystem::forces(StepVector& v) const {
 
 BorderedVector PackedSystem::motion(StepVector& v) const {
   BorderedVector out{&v.velocity, &v.pressure, std::vector<double>(bodySize())};
-  Eigen::Map<Eigen::VectorXd>(out.rest.data(), bodySize()) = 
+  Eigen::Map<Eigen::VectorXd>(out.rest.data(), bodySize()) =
       problem_->coordinates.gatherMotion(v.bodies).cwiseProduct(scale_);
   return out;
 }

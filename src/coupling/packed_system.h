@@ -1,10 +1,10 @@
 #pragma once
 // The step's linear system as `fast` solves it: all unknowns in one vector - U by components, p^, lattice.size each,
-// the unknowns of the bodies' motion times their scale, the impulses of the contacts in the border - and flexible GMRES with
-// its preconditioner. The right side and the solution stay in the fields that hold them (BorderedVector); the basis of
-// GMRES is packed. The preconditioner: the liquid's (liquid_preconditioner.h), then an approximate Schur complement S
-// of the bodies, their inertia and their resistance to motion in this liquid, bordered by the contacts. S ages slowly
-// and is kept while it serves.
+// the unknowns of the bodies' motion times their scale, the impulses of the contacts in the border - and flexible GMRES
+// with its preconditioner. The right side and the solution stay in the fields that hold them (BorderedVector); the
+// basis of GMRES is packed. The preconditioner: the liquid's (liquid_preconditioner.h), then an approximate Schur
+// complement S of the bodies, their inertia and their resistance to motion in this liquid, bordered by the contacts. S
+// ages slowly and is kept while it serves.
 //
 // The rows of the divergence are multiplied by 2 N where that is more than one: so much of a stress does a divergence
 // make, and a residual that weighs it less lets velocities pass whose strain rates are wrong.
@@ -131,11 +131,11 @@ class PackedSystem {
   Fgmres krylov_;
   double flux_weight_ = 1.0;
   LiquidPlaces<double> before_;  // of the right side, where the bodies' motion is taken from it
-  Eigen::VectorXd scale_;       // unknown = scale * velocity
+  Eigen::VectorXd scale_;        // unknown = scale * velocity
   Eigen::SparseMatrix<double> twists_of_;  // from the unknowns to the twists, in the units of the columns
-  Eigen::MatrixXd bodies_;      // A_vv of the unknowns with inertia
-  Eigen::MatrixXd own_resistance_;  // and without
-  Eigen::MatrixXd resistance_;  // of the bodies, physical units
+  Eigen::MatrixXd bodies_;                 // A_vv of the unknowns with inertia
+  Eigen::MatrixXd own_resistance_;         // and without
+  Eigen::MatrixXd resistance_;             // of the bodies, physical units
   std::vector<int> resistance_of_;
   double resistance_number_ = -1.0;
   // Of the first solve since set(): later ones have fewer decades to go.

@@ -42,7 +42,7 @@ struct PressureRegion {
 };
 
 // `unknowns`: of the bodies' motion.
-std::vector<PressureRegion> findPressureRegions(const StaggeredCoefficients<double>& coefficients,
-                                                const BodyRows& rows, const BodyCoordinates& unknowns);
+std::vector<PressureRegion> findPressureRegions(const StaggeredCoefficients<double>& coefficients, const BodyRows& rows,
+                                                const BodyCoordinates& unknowns);
 
 }  // namespace monolith

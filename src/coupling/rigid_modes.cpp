@@ -65,12 +65,22 @@ RigidModes::Drift RigidModes::makeDrift(int number, const std::vector<std::int32
   for (const BodyCoordinates::Assembly& assembly : p.coordinates.assemblies()) {
     const bool inside = std::any_of(assembly.bodies.begin(), assembly.bodies.end(), [&](int b) { return in_it[b]; });
     if (!inside || !assembly.adrift) continue;
-    // Joints at rest, and of the root v = v_c + w x (x - c)/size, and the body turns with w/size.
-    Matrix6d twist = Matrix6d::Identity();
-    const Eigen::Vector3d x = ((*p.bodies)[assembly.bodies.front()].p_WBcm - centre) / size;
-    for (int q = 0; q < 3; ++q) twist.block<3, 1>(0, 3 + q) = Eigen::Vector3d::Unit(q).cross(x);
-    twist.bottomRightCorner<3, 3>() /= size;
-    out.bodies.emplace_back(assembly.first, scale.segment<6>(assembly.first).asDiagonal() * twist);
+    // v = v_c + w x (x - c)/size, and the body turns with w/size.
+    Eigen::Matrix<double, Eigen::Dynamic, 6> unknowns(assembly.count, 6);
+    for (int q = 0; q < 6; ++q) {
+      std::vector<Vector6d> twists(p.bodies->size(), Vector6d::Zero());
+      for (const int b : assembly.bodies) {
+        const Eigen::Vector3d x = ((*p.bodies)[b].p_WBcm - centre) / size;
+        if (q < 3) {
+          twists[b][q] = 1.0;
+        } else {
+          twists[b].head<3>() = Eigen::Vector3d::Unit(q - 3).cross(x);
+          twists[b][q] = 1.0 / size;
+        }
+      }
+      unknowns.col(q) = p.coordinates.gatherMotion(twists).segment(assembly.first, assembly.count);
+    }
+    out.bodies.emplace_back(assembly.first, scale.segment(assembly.first, assembly.count).asDiagonal() * unknowns);
   }
   return out;
 }
@@ -104,7 +114,8 @@ RigidModes::Amplitudes RigidModes::project(const Drift& drift, const std::vector
     }
   }
   for (const auto& [first, unknowns] : drift.bodies) {
-    const auto force = Eigen::Map<const Eigen::Matrix<Real, 6, 1>>(r.data() + 4 * size + first);
+    using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
+    const Eigen::Map<const Vector> force(r.data() + 4 * size + first, unknowns.rows());
     out += unknowns.transpose() * force.template cast<double>();
   }
   return out;
@@ -126,8 +137,9 @@ void RigidModes::add(const Drift& drift, const Amplitudes& amplitudes, std::vect
       for (int i = 0; i < count; ++i) to[i] += constant + change * static_cast<Real>(i);
     }
   }
+  using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
   for (const auto& [first, unknowns] : drift.bodies) {
-    Eigen::Map<Eigen::Matrix<Real, 6, 1>>(z.data() + 4 * size + first) += (unknowns * amplitudes).template cast<Real>();
+    Eigen::Map<Vector>(z.data() + 4 * size + first, unknowns.rows()) += (unknowns * amplitudes).template cast<Real>();
   }
 }
 

@@ -23,8 +23,8 @@ class RigidModes {
  public:
   using Apply = std::function<void(std::vector<double>& x, std::vector<double>& y)>;
 
-  // apply: y = A x over packed vectors (packed_system.h) of the liquid and the free bodies, whose unknowns are `scale`
-  // times their twists. The problem must outlive the use.
+  // apply: y = A x over packed vectors (packed_system.h) of the liquid and the bodies, whose unknowns are `scale` times
+  // those of their motion. The problem must outlive the use.
   void set(const StepProblem& problem, const Eigen::VectorXd& scale, const Apply& apply);
 
   // z += R (R^T A R)^-1 R^T r, packed likewise; they may be longer.
@@ -40,7 +40,8 @@ class RigidModes {
   };
   struct Drift {
     std::array<std::vector<Run>, 3> faces;
-    std::vector<std::pair<Eigen::Index, Matrix6d>> bodies;  // first unknown; from amplitudes to unknowns
+    // First unknown; from amplitudes to unknowns.
+    std::vector<std::pair<Eigen::Index, Eigen::Matrix<double, Eigen::Dynamic, 6>>> bodies;
     double step = 0.0;                                      // between faces
     Matrix6d inverse = Matrix6d::Zero();                    // of R^T A R
   };

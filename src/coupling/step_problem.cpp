@@ -76,28 +76,18 @@ void StepProblem::assemble(SolidFractions& solids, const std::vector<RigidBody>&
     for (int d = 0; d < 6; ++d) scale[d] = std::sqrt(M(d, d) + displaced * (d < 3 ? 1.0 : 0.4 * radius2));
     twist_scale.push_back(scale);
   }
-  coordinates.set(all_bodies);
-  setUnknownScales();
+  setUnknowns();
   regions = findPressureRegions(coefficients, rows, coordinates);
 }
 
-// Of a twist's component that of the twist, of a joint what it moves and what resists it.
-void StepProblem::setUnknownScales() {
-  unknown_scale.resize(coordinates.size());
+void StepProblem::setUnknowns() {
+  std::vector<double> resistance = joint_resistance;
+  for (double& r : resistance) r /= impulse_scale;
+  coordinates.set(*bodies, twist_scale, resistance);
+  unknown_scale = Eigen::VectorXd::Ones(coordinates.size());
   for (const BodyCoordinates::Assembly& assembly : coordinates.assemblies()) {
-    for (const int b : assembly.bodies) {
-      const Eigen::Index joint = coordinates.ofJoint(b);
-      if (joint < 0) {
-        if (free_index[b] >= 0 && !(*bodies)[b].joint) unknown_scale.segment<6>(assembly.first) = twist_scale[free_index[b]];
-        continue;
-      }
-      double square = joint_resistance.empty() ? 0.0 : joint_resistance[b] / impulse_scale;
-      for (Eigen::SparseMatrix<double>::InnerIterator it(coordinates.S(), joint); it; ++it) {
-        const double part = it.value() * twist_scale[it.row() / 6][it.row() % 6];
-        square += part * part;
-      }
-      unknown_scale[joint] = std::sqrt(square);
-    }
+    if (assembly.bodies.size() > 1) continue;  // scaled already
+    unknown_scale.segment<6>(assembly.first) = twist_scale[free_index[assembly.bodies[0]]];
   }
 }
 
@@ -108,15 +98,16 @@ Eigen::MatrixXd StepProblem::bodyInertia() const {
   const Eigen::MatrixXd moved = M * coordinates.S();
   Eigen::MatrixXd out = coordinates.S().transpose() * moved;
   for (std::size_t b = 0; b < joint_resistance.size(); ++b) {
-    const Eigen::Index joint = coordinates.ofJoint(b);
-    if (joint >= 0) out(joint, joint) += joint_resistance[b] / impulse_scale;
+    if (joint_resistance[b] == 0.0 || !coordinates.hasJoint(b)) continue;
+    const Eigen::VectorXd row = coordinates.jointRow(b);
+    out += joint_resistance[b] / impulse_scale * row * row.transpose();
   }
   return out;
 }
 
 void StepProblem::addJointResistance(const std::vector<Vector6d>& twists, std::vector<Vector6d>& impulses) const {
   for (std::size_t b = 0; b < joint_resistance.size(); ++b) {
-    if (joint_resistance[b] == 0.0 || coordinates.ofJoint(b) < 0) continue;
+    if (joint_resistance[b] == 0.0 || !coordinates.hasJoint(b)) continue;
     const auto parent = static_cast<std::size_t>((*bodies)[b].joint->parent);
     const Vector6d row = jointRow((*bodies)[b]), reaction = carryMatrix(*bodies, b).transpose() * row;
     const double velocity = row.dot(twists[b]) - (free_index[parent] < 0 ? 0.0 : reaction.dot(twists[parent]));

@@ -15,7 +15,7 @@
 //
 // in the units of coupling/stokes_coefficients.h; bodies by M^ = M/(rho h^3). Symmetric, indefinite. r are the impulses
 // of the contacts, J their Jacobian (coupling/contact_rows.h). Liquid that sticks to a body counts in its inertia
-// (coupling/sticking_liquid.h). Bodies that joints connect have the joints' velocities for unknowns in place of twists
+// (coupling/sticking_liquid.h). Bodies that joints connect have other unknowns in place of their twists
 // (coupling/body_coordinates.h); resistance of the joints is part of M^.
 
 #include <string>
@@ -43,10 +43,10 @@ class StepProblem {
                 const std::vector<double>& liquid_distance, double density, double viscosity, double step,
                 bool rates = false);
 
-  // The right side with r = 0, and `given`. free_velocity: u*, gravity included; its memory becomes that of rhs.velocity.
-  // free_twists: v* of free bodies, the prescribed twist of the others. gravity acts on the liquid that sticks to
-  // bodies. Returns what is wrong, if there is no solution: a sealed region whose volume the prescribed motions would
-  // change.
+  // The right side with r = 0, and `given`. free_velocity: u*, gravity included; its memory becomes that of
+  // rhs.velocity. free_twists: v* of free bodies, the prescribed twist of the others. gravity acts on the liquid that
+  // sticks to bodies. Returns what is wrong, if there is no solution: a sealed region whose volume the prescribed
+  // motions would change.
   [[nodiscard]] std::string rightSide(FaceField<double> free_velocity, const std::vector<Vector6d>& free_twists,
                                       const Eigen::Vector3d& gravity, StepVector& rhs);
 
@@ -74,8 +74,8 @@ class StepProblem {
   // Everything is built anew the next time.
   void forget();
 
-  // After joint_resistance has changed.
-  void setUnknownScales();
+  // Those of the bodies' motion; anew after joint_resistance has changed.
+  void setUnknowns();
 
   Eigen::Index bodyUnknowns() const { return coordinates.size(); }
   // M^ of the unknowns, joints' resistance included: S^T M^ S + R.
@@ -100,7 +100,7 @@ class StepProblem {
   double dt = 1.0;
   std::vector<int> free;                 // bodies whose twist is unknown
   BodyCoordinates coordinates;           // the unknowns of their motion
-  Eigen::VectorXd unknown_scale;         // of these, by twist_scale
+  Eigen::VectorXd unknown_scale;         // of these, as twist_scale of twists
   std::vector<double> joint_resistance;  // of all bodies' joints, N m s^2/rad or N s^2/m: impulse of a step by velocity
   std::vector<Vector6d> given;           // what prescribed motions bring to each body's twist
   std::vector<int> free_index;           // body -> place in `free`, or -1

@@ -1,7 +1,7 @@
 #pragma once
 // What the solvers of a step (step_problem.h) have in common: `fast`, `direct` and `reference` answer the same two
-// questions. x holds the twists of all bodies but for what prescribed motions bring to them; those that are not free are
-// left alone and count as zero (their motion is in the right side already).
+// questions. x holds the twists of all bodies but for what prescribed motions bring to them; those that are not free
+// are left alone and count as zero (their motion is in the right side already).
 
 #include <string>
 

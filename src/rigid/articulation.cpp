@@ -51,7 +51,9 @@ Vector6d jointTwist(const RigidBody& body) {
       s.head<3>() = axis.cross(body.q_WB * body.p_BBcm);
       s.tail<3>() = axis;
       break;
-    case JointType::kPrismatic: s.head<3>() = axis; break;
+    case JointType::kPrismatic:
+      s.head<3>() = axis;
+      break;
   }
   return s;
 }
@@ -67,8 +69,12 @@ Matrix6d carryMatrix(const std::vector<RigidBody>& bodies, std::size_t b) {
 Vector6d jointRow(const RigidBody& body) {
   Vector6d row = Vector6d::Zero();
   switch (body.joint->type) {
-    case JointType::kRevolute: row.tail<3>() = axisOf(body); break;
-    case JointType::kPrismatic: row.head<3>() = axisOf(body); break;
+    case JointType::kRevolute:
+      row.tail<3>() = axisOf(body);
+      break;
+    case JointType::kPrismatic:
+      row.head<3>() = axisOf(body);
+      break;
   }
   return row;
 }

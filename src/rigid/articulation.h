@@ -19,7 +19,8 @@ std::vector<int> rootsOf(const std::vector<RigidBody>& bodies);
 // neighbours.
 bool mayTouch(const std::vector<RigidBody>& bodies, const std::vector<int>& roots, std::size_t a, std::size_t b);
 
-// s: twist of body b (m/s, rad/s, at its centre of mass) while its joint moves at 1 rad/s or 1 m/s and its parent rests.
+// s: twist of body b (m/s, rad/s, at its centre of mass) while its joint moves at 1 rad/s or 1 m/s and its parent
+// rests.
 Vector6d jointTwist(const RigidBody& body);
 
 // X: twist of b -> twist of the parent, as if they were one body.

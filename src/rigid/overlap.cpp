@@ -1,10 +1,10 @@
 #include "rigid/overlap.h"
-#include "rigid/articulation.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <map>
 
+#include "rigid/articulation.h"
 #include "rigid/convex_separation.h"
 #include "rigid/mesh_manifold.h"
 
@@ -99,7 +99,9 @@ std::string metres(double length) {
 
 std::string describeOverlaps(const std::vector<RigidBody>& bodies, const TankWalls& walls, double tolerance, int only) {
   const std::vector<int> roots = rootsOf(bodies);
-  const auto counts = [&](std::size_t body) { return only < 0 || roots[body] == roots[static_cast<std::size_t>(only)]; };
+  const auto counts = [&](std::size_t body) {
+    return only < 0 || roots[body] == roots[static_cast<std::size_t>(only)];
+  };
   std::map<const TriangleMesh*, std::shared_ptr<const MeshSurface>> surfaces;
   std::vector<std::vector<Solid>> solids(bodies.size());
   std::vector<Eigen::AlignedBox3d> boxes(bodies.size());

@@ -20,10 +20,10 @@ void forEachWallDepth(const TankWalls& walls, const Eigen::AlignedBox3d& box, Fu
   }
 }
 
-// A line for every pair of bodies that may touch and penetrate by more than `tolerance` (m), in any of their periodic images, with
-// their names and the depth, and for every body that sticks out of a wall ("-x" .. "+z"); empty if all is well. Depth:
-// of convex shapes the least translation that parts them (rigid/convex_separation.h); with a mesh the deepest of many
-// points of each surface within the other. only: the index of a body whose overlaps alone count, with
+// A line for every pair of bodies that may touch and penetrate by more than `tolerance` (m), in any of their periodic
+// images, with their names and the depth, and for every body that sticks out of a wall ("-x" .. "+z"); empty if all is
+// well. Depth: of convex shapes the least translation that parts them (rigid/convex_separation.h); with a mesh the
+// deepest of many points of each surface within the other. only: the index of a body whose overlaps alone count, with
 // those of what joints connect to it; -1: all.
 std::string describeOverlaps(const std::vector<RigidBody>& bodies, const TankWalls& walls, double tolerance,
                              int only = -1);

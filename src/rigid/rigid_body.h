@@ -35,8 +35,8 @@ struct RigidBody {
   Eigen::Vector3d p_WBcm = Eigen::Vector3d::Zero();           // m
   Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();
   Vector6d twist = Vector6d::Zero();
-  double joint_position = 0.0;                                // rad, m
-  double joint_velocity = 0.0;                                // rad/s, m/s
+  double joint_position = 0.0;  // rad, m
+  double joint_velocity = 0.0;  // rad/s, m/s
 
   Eigen::Isometry3d pose() const {                            // X_WB, of the body frame
     Eigen::Isometry3d X_WB(q_WB);

@@ -9,8 +9,12 @@ namespace monolith {
 inline Eigen::Isometry3d jointPose(const JointDescription& joint, double position) {
   Eigen::Isometry3d X_JB = Eigen::Isometry3d::Identity();
   switch (joint.type) {
-    case JointType::kRevolute: X_JB.linear() = Eigen::AngleAxisd(position, joint.axis).toRotationMatrix(); break;
-    case JointType::kPrismatic: X_JB.translation() = position * joint.axis; break;
+    case JointType::kRevolute:
+      X_JB.linear() = Eigen::AngleAxisd(position, joint.axis).toRotationMatrix();
+      break;
+    case JointType::kPrismatic:
+      X_JB.translation() = position * joint.axis;
+      break;
   }
   return joint.X_PJ * X_JB;
 }

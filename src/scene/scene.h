@@ -72,36 +72,36 @@ enum class JointType { kRevolute, kPrismatic };
 
 // Motion of a joint that nothing stops: rate(t) = rate + amplitude * 2 pi frequency * cos(2 pi frequency t + phase).
 struct PrescribedJointMotion {
-  double rate = 0.0;                                       // rad/s, m/s
-  double amplitude = 0.0;                                  // rad, m
-  double frequency = 0.0;                                  // Hz
-  double phase = 0.0;                                      // rad
+  double rate = 0.0;       // rad/s, m/s
+  double amplitude = 0.0;  // rad, m
+  double frequency = 0.0;  // Hz
+  double phase = 0.0;      // rad
 };
 
 // Effort of a joint (N m, N), limited to its `most_effort` in all:
 //   commanded effort + stiffness (commanded position - position) + damping (commanded velocity - velocity)
 struct JointServo {
-  double stiffness = 0.0;                                  // N m/rad, N/m
-  double damping = 0.0;                                    // N m s/rad, N s/m
+  double stiffness = 0.0;  // N m/rad, N/m
+  double damping = 0.0;    // N m s/rad, N s/m
 };
 
 // By which a body hangs on another. Units of a revolute joint, then of a prismatic one. A continuous joint is a
 // revolute one without limits.
 struct JointDescription {
-  std::string name;                                        // as in the URDF
+  std::string name;  // as in the URDF
   JointType type = JointType::kRevolute;
-  int parent = -1;                                         // in Scene::bodies, before the body itself
-  Eigen::Isometry3d X_PJ = Eigen::Isometry3d::Identity();  // the body frame, in the parent's, at position 0
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();         // unit, in the body frame
-  double lower = -std::numeric_limits<double>::infinity();  // rad, m
-  double upper = std::numeric_limits<double>::infinity();  // rad, m
-  double damping = 0.0;                                    // N m s/rad, N s/m
-  double friction = 0.0;                                   // N m, N: Coulomb's
+  int parent = -1;                                               // in Scene::bodies, before the body itself
+  Eigen::Isometry3d X_PJ = Eigen::Isometry3d::Identity();        // the body frame, in the parent's, at position 0
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();               // unit, in the body frame
+  double lower = -std::numeric_limits<double>::infinity();       // rad, m
+  double upper = std::numeric_limits<double>::infinity();        // rad, m
+  double damping = 0.0;                                          // N m s/rad, N s/m
+  double friction = 0.0;                                         // N m, N: Coulomb's
   double most_effort = std::numeric_limits<double>::infinity();  // N m, N
   JointServo servo;
   std::optional<PrescribedJointMotion> prescribed;
-  double position = 0.0;                                   // initial, rad, m
-  double velocity = 0.0;                                   // initial, rad/s, m/s
+  double position = 0.0;  // initial, rad, m
+  double velocity = 0.0;  // initial, rad/s, m/s
 };
 
 struct LinkFrame {

@@ -40,8 +40,8 @@ struct BodyPast {
 // the bodies.
 BodyPlan planSecondOrder(const std::vector<RigidBody>& bodies, const Eigen::Vector3d& gravity,
                          const std::vector<Wrench>& wrenches, const BodyPast& past, double time,
-                         const StepWeights& weights, const std::vector<char>& closing,
-                         const Eigen::Vector3d& period, std::vector<Contact>& contacts);
+                         const StepWeights& weights, const std::vector<char>& closing, const Eigen::Vector3d& period,
+                         std::vector<Contact>& contacts);
 
 // Twists as solved for; moves the bodies.
 void finishEuler(const BodyPlan& plan, const std::vector<Vector6d>& twists, double dt, const Eigen::Vector3d& period,

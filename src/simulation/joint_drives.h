@@ -5,9 +5,9 @@
 //   drive  = e + k (q_c - q) + c (q'_c - q'),   |drive| <= most_effort       e: commanded
 //   losses = -d q' - f,   |f| <= F, opposite to q' where the joint slides; where it sticks q' = 0
 //
-// Servo and damping are implicit, taken at the end of the step, so that no stiffness is too large for it; e is held over
-// it. What a limited effort does - servo at its limit, friction sliding or sticking - is found by trying what it did
-// last and looking at the motion that comes of it, until they agree.
+// Servo and damping are implicit, taken at the end of the step, so that no stiffness is too large for it; e is held
+// over it. What a limited effort does - servo at its limit, friction sliding or sticking - is found by trying what it
+// did last and looking at the motion that comes of it, until they agree.
 
 #include <vector>
 

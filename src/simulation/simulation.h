@@ -78,8 +78,8 @@ class Simulation {
                     const Eigen::Vector3d& angular_velocity);
 
   // Sets the joint by which a body hangs on another; servo and commands stay as they are. Throws std::invalid_argument
-  // of a body without a joint or with one that is prescribed, unless finite and within the joint's range, and unless all
-  // that it moves is inside the tank and clear of the other bodies.
+  // of a body without a joint or with one that is prescribed, unless finite and within the joint's range, and unless
+  // all that it moves is inside the tank and clear of the other bodies.
   void setJointState(int body, double position, double velocity);
 
   // Gives the liquid, wherever it is, this velocity (m/s) of a point in W; of what diverges the next step takes the

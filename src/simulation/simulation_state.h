@@ -27,7 +27,7 @@ struct SimulationState {
   std::vector<Vector6d> stuck_twists;             // of the liquid that sticks to each body, set or not since
   std::vector<Wrench> mean_liquid, mean_contact;  // over the last output step
   std::vector<double> mean_effort;                // likewise, N m, N, of the bodies' joints
-  std::vector<Wrench> joints;                     // on each body by what joints do implicitly, mean over the last sub-step
+  std::vector<Wrench> joints;  // on each body by what joints do implicitly, mean over the last sub-step
   std::vector<JointMode> joint_modes;
   double liquid_speed = 0.0;                      // m/s, no component of the velocity is larger
   double fastest = 0.0;                           // m/s, see typicalSpeed()

@@ -221,7 +221,8 @@ CoupledReport Simulation::Impl::solveWithLiquid(const StepWeights& w, const std:
   CoupledState& solution = scratch.other;
   guess(w, free_velocity, solution);
   const auto solve = [&](FaceField<double>& right, const CoupledOptions& with) {
-    return system.solve(right, plan.free_twists, scaled, laws.of(contacts), scaled_stops, scene.gravity, with, solution);
+    return system.solve(right, plan.free_twists, scaled, laws.of(contacts), scaled_stops, scene.gravity, with,
+                        solution);
   };
   const auto solveOnce = [&](FaceField<double>& right) {
     if (!nonNewtonian()) return solve(right, options);
@@ -273,8 +274,8 @@ void Simulation::Impl::takeJointMeans(const StepWeights& w) {
     const Vector6d change = solved.twists[b] - plan.free_twists[b];
     const double part = w.implicit / w.dt;
     joints[b].force = body.mass / w.dt * change.head<3>() - part * (solved.liquid[b].force + solved.contact[b].force);
-    joints[b].torque = body.worldInertia() / w.dt * change.tail<3>() -
-                       part * (solved.liquid[b].torque + solved.contact[b].torque);
+    joints[b].torque =
+        body.worldInertia() / w.dt * change.tail<3>() - part * (solved.liquid[b].torque + solved.contact[b].torque);
   }
   const JointDrives drives(state.bodies, commands, w, scratch.joint_modes);
   for (const StopForce& stop : solved.contact_forces.stops) {

@@ -20,6 +20,8 @@ struct Corner {
     problem.grid.h = 0.02;
     problem.bodies = &bodies;
     problem.free = problem.free_index = {0};
+    problem.given = {Vector6d::Zero()};
+    problem.coordinates.set(bodies);
     problem.impulse_scale = 0.5;
     problem.dt = 0.01;
     // A corner of the box on the floor and at a wall, another corner on the floor, and one near that.
@@ -39,7 +41,7 @@ struct Corner {
     return g;
   }
   ContactRows rows(const std::vector<Contact>& of) const {
-    return buildContactRows(problem, of, std::vector<ContactLaw>(of.size(), {0.5, 0.0}), {Vector6d::Zero()}, 0.1);
+    return buildContactRows(problem, of, std::vector<ContactLaw>(of.size(), {0.5, 0.0}), {}, 0.1);
   }
 };
 
@@ -48,11 +50,11 @@ TEST(WarmStart, IsWhatTheContactsDid) {
   const ContactRows rows = corner.rows(corner.contacts);
   Eigen::VectorXd r(12);
   r << 1.0, 2.0, 3.0, 4.0, 0.1, -0.2, 0.3, 0.4, -0.5, 0.6, 0.7, 0.8;
-  std::vector<ContactForce> forces;
+  ContactForces forces;
   std::vector<Wrench> wrenches;
   distributeImpulses(corner.problem, rows, corner.contacts, r, forces, wrenches);
   // Impulses over the step: of the floor 1 + 3 + 4, of the wall 2, and friction.
-  EXPECT_NEAR(forces[1].normal, 2.0 * 0.5 / 0.01, 1e-12);
+  EXPECT_NEAR(forces.contacts[1].normal, 2.0 * 0.5 / 0.01, 1e-12);
   EXPECT_LT((warmStart(corner.problem, rows, corner.contacts, forces) - r).norm(), 1e-12);
   // The same load acts half as long in half a step.
   corner.problem.dt = 0.005;
@@ -62,7 +64,7 @@ TEST(WarmStart, IsWhatTheContactsDid) {
 TEST(WarmStart, NoForceCountsTwice) {
   Corner corner;
   const std::vector<Contact> one = {corner.contacts[2]};
-  std::vector<ContactForce> forces;
+  ContactForces forces;
   std::vector<Wrench> wrenches;
   distributeImpulses(corner.problem, corner.rows(one), one, Eigen::Vector3d(3.0, 0.0, 0.0), forces, wrenches);
   const Eigen::VectorXd r = warmStart(corner.problem, corner.rows(corner.contacts), corner.contacts, forces);

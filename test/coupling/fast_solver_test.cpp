@@ -96,7 +96,7 @@ TEST(FastSolver, ColumnsOfTheBodiesAreThePlainRows) {
       StepVector x, y;
       x.resize(l, 2);
       const Eigen::VectorXd v = Eigen::VectorXd::NullaryExpr(n, [&] { return gauss(random); });
-      scatterBodies(p, v.cwiseQuotient(scale), x.bodies);
+      p.coordinates.scatterMotion(v.cwiseQuotient(scale), x.bodies);
       op.apply(x, y);
       for (auto& field : y.velocity) clearHalo(l, field);
       clearHalo(l, y.pressure);
@@ -120,7 +120,7 @@ TEST(FastSolver, ColumnsOfTheBodiesAreThePlainRows) {
       EXPECT_NE(other, was);
       columns.giveBack(before, packedFields(l, other.data()));
       EXPECT_EQ(other, was);
-      const Eigen::VectorXd own = gatherBodies(p, y.bodies).cwiseQuotient(scale);
+      const Eigen::VectorXd own = p.coordinates.gatherForces(y.bodies).cwiseQuotient(scale);
       EXPECT_LT((columns.ownResistance() * v - own).norm(), 1e-11 * (1.0 + own.norm()));
 
       // Transposed.
@@ -134,7 +134,7 @@ TEST(FastSolver, ColumnsOfTheBodiesAreThePlainRows) {
       for (int a = 0; a < 3; ++a) std::copy(x.velocity[a].begin(), x.velocity[a].end(), packed.begin() + a * l.size);
       std::copy(x.pressure.begin(), x.pressure.end(), packed.begin() + 3 * l.size);
       op.apply(x, y);
-      const Eigen::VectorXd forces = gatherBodies(p, y.bodies).cwiseQuotient(scale);
+      const Eigen::VectorXd forces = p.coordinates.gatherForces(y.bodies).cwiseQuotient(scale);
       EXPECT_LT((columns.forces(packedFields<const double>(l, packed.data())) - forces).norm(),
                 1e-11 * (1.0 + forces.norm()));
     }

@@ -90,7 +90,7 @@ TEST(PressureRegions, AreThoseOfAFloodFill) {
     // From one region with all cells to many small ones.
     const auto c = randomRegions(seed, periodic, 0.1 * (seed % 10));
     const std::vector<Region> expected = floodFill(c);
-    const std::vector<PressureRegion> found = findPressureRegions(c, BodyRows(), {});
+    const std::vector<PressureRegion> found = findPressureRegions(c, BodyRows(), BodyCoordinates());
     ASSERT_EQ(found.size(), expected.size()) << seed;
     for (std::size_t r = 0; r < found.size(); ++r) {
       EXPECT_EQ(found[r].sealed, expected[r].sealed) << seed;
@@ -112,6 +112,14 @@ TEST(PressureRegions, AreThoseOfAFloodFill) {
   EXPECT_GT(open, 100u);
 }
 
+BodyCoordinates oneBody(BodyMotion motion) {
+  RigidBody body;
+  body.motion = motion;
+  BodyCoordinates out;
+  out.set({body});
+  return out;
+}
+
 // What a body pushes into a sealed region decides whether its pressure is free.
 TEST(PressureRegions, AFreeBodyFeelsTheConstantUnlessItsRowsCancel) {
   auto c = randomRegions(1, {false, false, false}, 0.0);
@@ -125,11 +133,13 @@ TEST(PressureRegions, AFreeBodyFeelsTheConstantUnlessItsRowsCancel) {
   c.own_fluid = c.mass;
   BodyRows rows;
   rows.divergence.push_back({l.index(1, 2, 3), 0, Vector6d::Unit(0)});
-  EXPECT_FALSE(findPressureRegions(c, rows, {1}).at(0).null_mode);
-  EXPECT_TRUE(findPressureRegions(c, rows, {0}).at(0).null_mode) << "its twist is not an unknown";
+  EXPECT_FALSE(findPressureRegions(c, rows, oneBody(BodyMotion::kFree)).at(0).null_mode);
+  EXPECT_TRUE(findPressureRegions(c, rows, oneBody(BodyMotion::kFixed)).at(0).null_mode)
+      << "its twist is not an unknown";
   rows.divergence.push_back({l.index(5, 2, 3), 0, -Vector6d::Unit(0)});
-  EXPECT_TRUE(findPressureRegions(c, rows, {1}).at(0).null_mode) << "what it pushes in it takes out elsewhere";
-  EXPECT_TRUE(findPressureRegions(c, rows, {1}).at(0).sealed);
+  EXPECT_TRUE(findPressureRegions(c, rows, oneBody(BodyMotion::kFree)).at(0).null_mode)
+      << "what it pushes in it takes out elsewhere";
+  EXPECT_TRUE(findPressureRegions(c, rows, oneBody(BodyMotion::kFree)).at(0).sealed);
 }
 
 }  // namespace

@@ -36,9 +36,10 @@ struct RandomStep {
     return g;
   }
 
-  // first: how the first of the bodies moves.
+  // first: how the first of the bodies moves. jointed: each of the others hangs on the one before, by a joint of one
+  // kind and of the other.
   explicit RandomStep(unsigned seed, Discretisation discretisation = Discretisation::kFitted,
-                      BodyMotion first = BodyMotion::kFree)
+                      BodyMotion first = BodyMotion::kFree, bool jointed = false)
       : problem(makeGrid(seed), discretisation) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
@@ -68,6 +69,14 @@ struct RandomStep {
       for (int d = 0; d < 6; ++d) bodies.back().twist[d] = (d < 3 ? 1.0 : 5.0) * signedUnit();
       if (body.motion == BodyMotion::kFixed) bodies.back().twist.setZero();
     }
+    for (int b = 1; jointed && b < 3; ++b) {
+      JointDescription joint;
+      joint.parent = b - 1;
+      joint.type = (seed + b) % 2 == 0 ? JointType::kRevolute : JointType::kPrismatic;
+      joint.axis = Eigen::Vector3d(signedUnit(), signedUnit(), 0.5).normalized();
+      joint.X_PJ = bodies[b - 1].pose().inverse() * bodies[b].pose();
+      bodies[b].joint = joint;
+    }
     SolidSampler(grid).sample(bodies, solids);
     const double fill = seed % 2 ? 100.0 : 4.0 + 4.0 * unit(random);
     liquid.assign(l.size, 0.0);
@@ -92,8 +101,7 @@ struct RandomStep {
     for (int a = 0; a < 3; ++a) tank.periodic[a] = l.periodic[a];
     contacts = ContactDetector(bodies, tank).detect(bodies, 0.02);
     for (Contact& c : contacts) c.gap = std::max(c.gap, 0.0);
-    rows = buildContactRows(problem, contacts, std::vector<ContactLaw>(contacts.size(), {unit(random), 0.0}),
-                            free_twists, 1.0);
+    rows = buildContactRows(problem, contacts, std::vector<ContactLaw>(contacts.size(), {unit(random), 0.0}), {}, 1.0);
   }
 
   // Twice the kinetic energy of liquid and free bodies over rho h^3, from the unknowns of the faces.

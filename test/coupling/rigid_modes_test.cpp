@@ -107,9 +107,11 @@ TEST(RigidModes, WhatABodyJoinsToLiquidThatIsHeldIsHeld) {
   }
   BodyRows rows;
   rows.divergence.push_back({pocket, 0, Vector6d::Unit(2)});
+  BodyCoordinates one_body;
+  one_body.set({RigidBody()});
   const auto adrift = [&] {
     int count = 0;
-    for (const PressureRegion& region : findPressureRegions(c, rows, {1})) count += region.drift >= 0;
+    for (const PressureRegion& region : findPressureRegions(c, rows, one_body)) count += region.drift >= 0;
     return count;
   };
   EXPECT_EQ(adrift(), 1);

@@ -75,7 +75,7 @@ void expectNoDivergence(const RandomStep& step, const StepVector& x, const Eigen
   StepVector b = step.rhs;
   if (r.size() > 0) {
     StepVector contact = step.start();
-    scatterBodies(step.problem, step.rows.J.transpose() * r, contact.bodies);
+    step.problem.coordinates.scatterForces(step.rows.J.transpose() * r, contact.bodies);
     for (std::size_t i = 0; i < b.bodies.size(); ++i) b.bodies[i] += contact.bodies[i];
   }
   const double allowed = tolerance * stepNorm(step.problem, b) / step.grid.h;
@@ -189,7 +189,7 @@ TEST_P(StepProperties, EnergyNeverGrowsAndContactsObeyTheirLaw) {
     expectNoDivergence(step, x, r, options.tolerance);
     if (m == 0) continue;
     ++with_contacts;
-    const Eigen::VectorXd w = step.rows.J * gatherBodies(step.problem, x.bodies) + step.rows.bias;
+    const Eigen::VectorXd w = step.rows.J * step.problem.coordinates.gatherMotion(x.bodies) + step.rows.bias;
     // What a contact gives way by, at most: by the response of the bodies without liquid.
     Eigen::MatrixXd response = Eigen::MatrixXd::Zero(step.problem.bodyUnknowns(), step.problem.bodyUnknowns());
     for (std::size_t i = 0; i < step.problem.free.size(); ++i) {
