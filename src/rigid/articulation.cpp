@@ -139,4 +139,16 @@ void addJointEffort(const std::vector<RigidBody>& bodies, std::size_t b, double 
   parent.torque -= effort * reaction.tail<3>();
 }
 
+std::vector<double> effortsThrough(const std::vector<RigidBody>& bodies, const std::vector<Wrench>& wrenches) {
+  std::vector<Vector6d> through(bodies.size());
+  for (std::size_t b = 0; b < bodies.size(); ++b) through[b] << wrenches[b].force, wrenches[b].torque;
+  std::vector<double> out(bodies.size(), 0.0);
+  for (std::size_t b = bodies.size(); b-- > 0;) {
+    if (!bodies[b].joint) continue;
+    out[b] = jointTwist(bodies[b]).dot(through[b]);
+    through[bodies[b].joint->parent] += carryMatrix(bodies, b).transpose() * through[b];
+  }
+  return out;
+}
+
 }  // namespace monolith

@@ -56,4 +56,7 @@ std::vector<JointStop> jointStops(const std::vector<RigidBody>& bodies, double d
 // Wrench of an effort (N m, N) of body b's joint, on it; the parent feels the opposite one at the same place.
 void addJointEffort(const std::vector<RigidBody>& bodies, std::size_t b, double effort, std::vector<Wrench>& wrenches);
 
+// N m, N, along each joint's axis, of the wrench that goes through it, if `wrenches` are what joints do to each body.
+std::vector<double> effortsThrough(const std::vector<RigidBody>& bodies, const std::vector<Wrench>& wrenches);
+
 }  // namespace monolith

@@ -31,14 +31,12 @@ JointDrives::Servo JointDrives::servoOf(std::size_t b) const {
   const RigidBody& body = bodies_[b];
   const JointServo& gains = body.joint->servo;
   const JointCommand& to = commands_[b];
-  const double dt = weights_.dt;
-  // Where the joint comes to: by the trapezoidal rule in steps of second order.
-  const double new_part = weights_.order == 2 ? 0.5 : 1.0;
-  const double ahead = (1.0 - new_part) * dt * body.joint_velocity;
   const double held = heldEffort(body, to);
   Servo servo;
-  servo.constant = gains.stiffness * (to.position - body.joint_position - ahead) + gains.damping * to.velocity;
-  servo.slope = gains.damping + new_part * dt * gains.stiffness;
+  // The position by the new velocity alone: by the mean of both a stiff servo would make that alternate for ever. What
+  // is different is of second order.
+  servo.constant = gains.stiffness * (to.position - body.joint_position) + gains.damping * to.velocity;
+  servo.slope = gains.damping + weights_.dt * gains.stiffness;
   servo.most = body.joint->most_effort - held;
   servo.least = -body.joint->most_effort - held;
   return servo;

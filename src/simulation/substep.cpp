@@ -282,22 +282,22 @@ void Simulation::Impl::takeJointMeans(const StepWeights& w) {
     addJointEffort(plan.bodies, stop.body, -w.implicit / w.dt * stop.sign * stop.effort, joints);
   }
   const double share = w.dt / scene.time_step;
-  std::vector<Vector6d> through(count);  // wrench through each joint, of all that hangs on it
   for (std::size_t b = 0; b < count; ++b) {
     const double velocity = jointVelocity(plan.bodies, b, solved.twists);
     const double friction = drives.frictionEffort(b, velocity);
     if (friction != 0.0) addJointEffort(plan.bodies, b, -friction, joints);
     joints[b].force += w.carry * state.joints[b].force;
     joints[b].torque += w.carry * state.joints[b].torque;
-    through[b] << joints[b].force, joints[b].torque;
     const double servo = drives.servoEffort(b, velocity);
     state.mean_effort[b] += share * (JointDrives::heldEffort(state.bodies[b], commands[b]) + servo);
   }
-  for (std::size_t b = count; b-- > 0;) {
-    const RigidBody& body = plan.bodies[b];
-    if (!body.joint) continue;
-    if (body.joint->prescribed) state.mean_effort[b] += share * jointTwist(body).dot(through[b]);
-    through[body.joint->parent] += carryMatrix(plan.bodies, b).transpose() * through[b];
+  // What is prescribed takes what holds the bodies along its axis, which has turned meanwhile.
+  for (const std::vector<RigidBody>* at : {&state.bodies, &plan.bodies}) {
+    const std::vector<double> along = effortsThrough(*at, joints);
+    for (std::size_t b = 0; b < count; ++b) {
+      const std::optional<JointDescription>& joint = plan.bodies[b].joint;
+      if (joint && joint->prescribed) state.mean_effort[b] += 0.5 * share * along[b];
+    }
   }
   state.joints = joints;
 }

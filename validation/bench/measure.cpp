@@ -85,7 +85,7 @@ struct FirstStep {
     options.tolerance = tolerance;
     options.maximum_iterations = scene.solver.maximum_iterations;
     FaceField<double> right = free_velocity;
-    return system.solve(right, twists, contacts, ContactLaws(scene).of(contacts), scene.gravity, options, state);
+    return system.solve(right, twists, contacts, ContactLaws(scene).of(contacts), {}, scene.gravity, options, state);
   }
 
   Scene scene;
