@@ -13,6 +13,13 @@ int rootOf(const Scene& scene, int body) {
   return body;
 }
 
+bool canBeMoved(const Scene& scene, int body) {
+  for (; scene.bodies[body].joint; body = scene.bodies[body].joint->parent) {
+    if (!scene.bodies[body].joint->prescribed) return true;
+  }
+  return scene.bodies[body].motion == BodyMotion::kFree;
+}
+
 std::vector<Robot> findRobots(const Scene& scene) {
   std::vector<Robot> all(scene.bodies.size());
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {

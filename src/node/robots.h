@@ -21,6 +21,10 @@ std::vector<Robot> findRobots(const Scene& scene);
 // What a body hangs on in the end; the body itself if it hangs on none.
 int rootOf(const Scene& scene, int body);
 
+// Whether what acts on a body can move it: it is free, or hangs by a joint that is not prescribed on another or on one
+// that can be moved itself.
+bool canBeMoved(const Scene& scene, int body);
+
 struct NamedFrame {
   std::string link;                                        // of the URDF
   std::string frame;                                       // tf

@@ -40,10 +40,10 @@ const Robot& TankControl::findRobot(const std::string& name, const std::string& 
 
 void TankControl::requireFree(int body, const std::string& field) const {
   const BodyDescription& description = simulation_.scene().bodies[body];
-  if (description.motion == BodyMotion::kFree) return;
+  if (canBeMoved(simulation_.scene(), body)) return;
   throw RequestError(field + ": value \"" + description.name + "\": this body is " +
                      (description.motion == BodyMotion::kFixed ? "fixed" : "moved as the scene prescribes") +
-                     ": expected one with motion: free");
+                     ": expected one with motion: free, or beyond a joint that is not prescribed");
 }
 
 Eigen::Isometry3d TankControl::framePose(const std::string& frame, const std::string& field) const {

@@ -72,6 +72,22 @@ TEST(Robots, AreRootsThatSomethingHangsOn) {
   EXPECT_TRUE(findRobots(Scene()).empty());
 }
 
+TEST(Robots, WhatHangsByFreeJointsOrOnAFreeRootCanBeMoved) {
+  Scene scene = robotsAndABall();
+  const auto movable = [&] {
+    std::vector<int> out;
+    for (int b = 0; b < 7; ++b) {
+      if (canBeMoved(scene, b)) out.push_back(b);
+    }
+    return out;
+  };
+  EXPECT_EQ(movable(), (std::vector<int>{0, 1, 2, 3, 4, 5, 6}));
+  for (const int root : {0, 4, 5}) scene.bodies[root].motion = BodyMotion::kFixed;
+  EXPECT_EQ(movable(), (std::vector<int>{1, 2, 3, 6}));
+  scene.bodies[1].joint->prescribed.emplace();
+  EXPECT_EQ(movable(), (std::vector<int>{2, 6})) << "the right finger is prescribed too";
+}
+
 TEST(Robots, FramesOfLinksBeginWithTheRobotsName) {
   const Scene scene = robotsAndABall();
   const auto frames = [&](int b) {
