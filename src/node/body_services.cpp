@@ -46,7 +46,7 @@ bool BodyServices::applyWrench(monolith_tank::ApplyBodyWrench::Request& request,
                                monolith_tank::ApplyBodyWrench::Response& response) {
   return answer("apply_body_wrench", response, [&] {
     const int body = control_.findBody(request.body_name, "body_name");
-    control_.requireFree(body, "body_name");
+    control_.requireMovable(body, "body_name");
     control_.framePose(request.reference_frame, "reference_frame");  // refuses an unknown one by the field's name
     WrenchCommand command;
     command.frame = request.reference_frame;

@@ -7,6 +7,17 @@
 #include "scene/nearest_word.h"
 
 namespace monolith {
+namespace {
+
+std::string nearest(const std::string& name, const std::vector<std::string>& known) {
+  return known.empty() ? "but the scene has none" : "the nearest is \"" + nearestWord(name, known) + "\"";
+}
+
+std::string movedBy(const BodyDescription& body) {
+  return body.motion == BodyMotion::kFixed ? "fixed" : "moved as the scene prescribes";
+}
+
+}  // namespace
 
 TankControl::TankControl(const Scene& scene, const FrameNames& names, const tf2::BufferCore& transforms)
     : simulation_(scene),
@@ -21,9 +32,7 @@ int TankControl::findBody(const std::string& name, const std::string& field) con
     if (body.name == name) return static_cast<int>(names.size());
     names.push_back(body.name);
   }
-  const std::string nearest =
-      names.empty() ? "but the scene has none" : "the nearest is \"" + nearestWord(name, names) + "\"";
-  throw RequestError(field + ": value \"" + name + "\": expected a body of the scene, " + nearest);
+  throw RequestError(field + ": value \"" + name + "\": expected a body of the scene, " + nearest(name, names));
 }
 
 const Robot& TankControl::findRobot(const std::string& name, const std::string& field) const {
@@ -32,17 +41,21 @@ const Robot& TankControl::findRobot(const std::string& name, const std::string& 
     if (robot.name == name) return robot;
     names.push_back(robot.name);
   }
-  const std::string nearest =
-      names.empty() ? "but the scene has none" : "the nearest is \"" + nearestWord(name, names) + "\"";
   throw RequestError(field + ": value \"" + name + "\": expected a robot, a body that others hang on by joints, " +
-                     nearest);
+                     nearest(name, names));
 }
 
 void TankControl::requireFree(int body, const std::string& field) const {
   const BodyDescription& description = simulation_.scene().bodies[body];
+  if (description.motion == BodyMotion::kFree) return;
+  throw RequestError(field + ": value \"" + description.name + "\": this body is " + movedBy(description) +
+                     ": expected one with motion: free");
+}
+
+void TankControl::requireMovable(int body, const std::string& field) const {
   if (canBeMoved(simulation_.scene(), body)) return;
-  throw RequestError(field + ": value \"" + description.name + "\": this body is " +
-                     (description.motion == BodyMotion::kFixed ? "fixed" : "moved as the scene prescribes") +
+  const BodyDescription& description = simulation_.scene().bodies[body];
+  throw RequestError(field + ": value \"" + description.name + "\": this body is " + movedBy(description) +
                      ": expected one with motion: free, or beyond a joint that is not prescribed");
 }
 

@@ -31,8 +31,11 @@ class TankControl {
   int findBody(const std::string& name, const std::string& field) const;
   // RequestError with the nearest known name.
   const Robot& findRobot(const std::string& name, const std::string& field) const;
-  // RequestError unless wrenches and twists can move the body.
+  // RequestError unless the scene lets the body go where it is put. What hangs on another is the simulation's to
+  // refuse.
   void requireFree(int body, const std::string& field) const;
+  // RequestError unless wrenches can move the body.
+  void requireMovable(int body, const std::string& field) const;
   // X_WF now. The empty frame is the world.
   Eigen::Isometry3d framePose(const std::string& frame, const std::string& field) const;
 
