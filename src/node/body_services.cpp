@@ -26,6 +26,7 @@ BodyServices::BodyServices(ros::NodeHandle& local, TankControl& control, const s
   servers_.push_back(local.advertiseService("clear_body_wrenches", &BodyServices::clearWrenches, this));
   servers_.push_back(local.advertiseService("get_body_state", &BodyServices::getState, this));
   servers_.push_back(local.advertiseService("set_body_state", &BodyServices::setState, this));
+  servers_.push_back(local.advertiseService("set_joint_state", &BodyServices::setJoints, this));
 }
 
 template <typename Response>
@@ -45,7 +46,7 @@ bool BodyServices::applyWrench(monolith_tank::ApplyBodyWrench::Request& request,
                                monolith_tank::ApplyBodyWrench::Response& response) {
   return answer("apply_body_wrench", response, [&] {
     const int body = control_.findBody(request.body_name, "body_name");
-    control_.requireFree(body, "body_name");
+    control_.requireMovable(body, "body_name");
     control_.framePose(request.reference_frame, "reference_frame");  // refuses an unknown one by the field's name
     WrenchCommand command;
     command.frame = request.reference_frame;
@@ -98,6 +99,23 @@ bool BodyServices::setState(monolith_tank::SetBodyState::Request& request,
     const Eigen::Vector3d velocity = X_WF.linear() * fromMessage(request.twist.linear, "twist.linear");
     const Eigen::Vector3d angular = X_WF.linear() * fromMessage(request.twist.angular, "twist.angular");
     control_.simulation().setBodyState(body, X_WB, velocity, angular);
+    hooks_.state_changed();
+  });
+}
+
+bool BodyServices::setJoints(monolith_tank::SetJointState::Request& request,
+                             monolith_tank::SetJointState::Response& response) {
+  return answer("set_joint_state", response, [&] {
+    const Robot& robot = control_.findRobot(request.body, "body");
+    const std::vector<int> bodies = findJoints(control_.simulation().scene(), robot, request.names, "names");
+    requireNumbers(request.positions, request.names, "positions");
+    if (request.velocities.empty()) {
+      request.velocities.assign(request.names.size(), 0.0);
+    } else {
+      requireNumbers(request.velocities, request.names, "velocities");
+    }
+    control_.requireInRange(bodies, request.positions, "positions");
+    control_.setJointStates(bodies, request.positions, request.velocities);
     hooks_.state_changed();
   });
 }

@@ -1,11 +1,13 @@
 #pragma once
-// Services on single bodies, named and shaped after Gazebo's: ~apply_body_wrench, ~clear_body_wrenches,
-// ~get_body_state, ~set_body_state. A request that cannot be done is answered with success = false and why.
+// Services on single bodies and their joints, named and shaped after Gazebo's: ~apply_body_wrench,
+// ~clear_body_wrenches, ~get_body_state, ~set_body_state, ~set_joint_state. A request that cannot be done is answered
+// with success = false and why.
 
 #include <monolith_tank/ApplyBodyWrench.h>
 #include <monolith_tank/ClearBodyWrenches.h>
 #include <monolith_tank/GetBodyState.h>
 #include <monolith_tank/SetBodyState.h>
+#include <monolith_tank/SetJointState.h>
 #include <ros/ros.h>
 
 #include <functional>
@@ -36,6 +38,7 @@ class BodyServices {
                      monolith_tank::ClearBodyWrenches::Response& response);
   bool getState(monolith_tank::GetBodyState::Request& request, monolith_tank::GetBodyState::Response& response);
   bool setState(monolith_tank::SetBodyState::Request& request, monolith_tank::SetBodyState::Response& response);
+  bool setJoints(monolith_tank::SetJointState::Request& request, monolith_tank::SetJointState::Response& response);
 
   // Runs the action and turns what it throws into the response.
   template <typename Response>

@@ -6,6 +6,7 @@
 
 #include "node/message_conversion.h"
 #include "node/request_error.h"
+#include "node/robots.h"
 #include "scene/nearest_word.h"
 
 namespace monolith {
@@ -28,8 +29,8 @@ ReferenceFrames::ReferenceFrames(const Scene& scene, const FrameNames& names, co
                        names.tank() + "\"");
     };
     add(names.body(body.name), "the body", Eigen::Isometry3d::Identity());
-    for (const LinkFrame& link : body.links) {
-      add(names.link(body.name, link.name), "link \"" + link.name + "\"", link.X_BL);
+    for (const NamedFrame& link : linkFrames(scene, static_cast<int>(b), names)) {
+      add(link.frame, "link \"" + link.link + "\"", link.X_BL);
     }
   }
 }

@@ -3,6 +3,7 @@
 #include <monolith_tank/BodyStates.h>
 #include <nav_msgs/Odometry.h>
 #include <rosgraph_msgs/Clock.h>
+#include <sensor_msgs/JointState.h>
 #include <tf2_msgs/TFMessage.h>
 #include <visualization_msgs/MarkerArray.h>
 
@@ -50,6 +51,10 @@ StatePublisher::StatePublisher(ros::NodeHandle& global, ros::NodeHandle& local, 
     body_markers_.push_back(makeBodyMarkers(bodies[b], static_cast<int>(b), warnings));
     for (const std::string& warning : warnings) ROS_WARN_STREAM(warning);
   }
+  for (const Robot& robot : findRobots(simulation.scene())) {
+    robots_.push_back(
+        {robot, local.advertise<sensor_msgs::JointState>(robot.name + "/joint_states", kQueueSize, true)});
+  }
 }
 
 ros::Time StatePublisher::stamp() const {
@@ -78,13 +83,15 @@ void StatePublisher::publishConstant() {
   corner.transform.translation = toVector(simulation_.scene().tank.origin);
   corner.transform.rotation.w = 1.0;
   frames.transforms.push_back(corner);
-  for (const BodyDescription& body : simulation_.scene().bodies) {
-    local_.setParam(body.name + "/robot_description", body.urdf_xml);
-    for (const LinkFrame& link : body.links) {
+  const Scene& scene = simulation_.scene();
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const BodyDescription& body = scene.bodies[b];
+    if (!body.joint) local_.setParam(body.name + "/robot_description", body.urdf_xml);
+    for (const NamedFrame& link : linkFrames(scene, static_cast<int>(b), frames_)) {
       geometry_msgs::TransformStamped transform;
       transform.header.stamp = stamp();
       transform.header.frame_id = frames_.body(body.name);
-      transform.child_frame_id = frames_.link(body.name, link.name);
+      transform.child_frame_id = link.frame;
       transform.transform = toTransform(link.X_BL);
       frames.transforms.push_back(transform);
     }
@@ -106,6 +113,7 @@ void StatePublisher::publish(const StepReport& report, double real_time_factor, 
     publishTransforms(states);
     publishStates(states);
     publishOdometry(states);
+    publishJoints();
   }
   if (isWanted(marker_rhythm_)) publishMarkers(states);
   if (isWanted(surface_rhythm_)) publishSurface();
@@ -165,6 +173,22 @@ void StatePublisher::publishOdometry(const std::vector<BodyState>& states) {
   }
 }
 
+void StatePublisher::publishJoints() {
+  std::vector<JointState> by_body(simulation_.scene().bodies.size());
+  for (const JointState& joint : simulation_.jointStates()) by_body[joint.body] = joint;
+  for (const PublishedRobot& robot : robots_) {
+    sensor_msgs::JointState message;
+    message.header.stamp = stamp();
+    for (const int body : robot.robot.jointed) {
+      message.name.push_back(simulation_.scene().bodies[body].joint->name);
+      message.position.push_back(by_body[body].position);
+      message.velocity.push_back(by_body[body].velocity);
+      message.effort.push_back(by_body[body].effort);
+    }
+    robot.joints.publish(message);
+  }
+}
+
 void StatePublisher::publishMarkers(const std::vector<BodyState>& states) {
   visualization_msgs::MarkerArray message;
   for (std::size_t b = 0; b < states.size(); ++b) {
@@ -195,6 +219,7 @@ void StatePublisher::publishStatistics(const StepReport& report, double real_tim
 std::vector<std::string> StatePublisher::topicsWithoutSubscriber() const {
   std::vector<const ros::Publisher*> publishers = {&states_, &surface_, &statistics_};
   for (const ros::Publisher& odometry : odometry_) publishers.push_back(&odometry);
+  for (const PublishedRobot& robot : robots_) publishers.push_back(&robot.joints);
   std::vector<std::string> topics;
   for (const ros::Publisher* publisher : publishers) {
     if (publisher->getNumSubscribers() == 0) topics.push_back(publisher->getTopic());

@@ -13,6 +13,7 @@
 #include "node/body_markers.h"
 #include "node/node_options.h"
 #include "node/publish_gate.h"
+#include "node/robots.h"
 #include "simulation/simulation.h"
 
 namespace monolith {
@@ -41,6 +42,7 @@ class StatePublisher {
   void publishTransforms(const std::vector<BodyState>& states);
   void publishStates(const std::vector<BodyState>& states);
   void publishOdometry(const std::vector<BodyState>& states);
+  void publishJoints();
   void publishMarkers(const std::vector<BodyState>& states);
   void publishSurface();
   std_msgs::Header header() const;
@@ -58,6 +60,11 @@ class StatePublisher {
   double publishing_sec_ = 0.0;  // wall time, since the last statistics
   ros::Publisher clock_, tf_, tf_static_, states_, surface_, statistics_, markers_, tank_;
   std::vector<ros::Publisher> odometry_;
+  struct PublishedRobot {
+    Robot robot;
+    ros::Publisher joints;
+  };
+  std::vector<PublishedRobot> robots_;
   std::vector<std::vector<BodyMarker>> body_markers_;
   ros::Time last_transform_stamp_;
 };

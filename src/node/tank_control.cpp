@@ -1,14 +1,30 @@
 #include "node/tank_control.h"
 
+#include <algorithm>
+#include <sstream>
+
 #include "node/request_error.h"
 #include "scene/nearest_word.h"
 
 namespace monolith {
+namespace {
+
+std::string nearest(const std::string& name, const std::vector<std::string>& known) {
+  return known.empty() ? "but the scene has none" : "the nearest is \"" + nearestWord(name, known) + "\"";
+}
+
+std::string movedBy(const BodyDescription& body) {
+  return body.motion == BodyMotion::kFixed ? "fixed" : "moved as the scene prescribes";
+}
+
+}  // namespace
 
 TankControl::TankControl(const Scene& scene, const FrameNames& names, const tf2::BufferCore& transforms)
     : simulation_(scene),
       frames_(scene, names, transforms),
-      wrenches_(static_cast<int>(scene.bodies.size()), scene.time_step) {}
+      wrenches_(static_cast<int>(scene.bodies.size()), scene.time_step),
+      joints_(scene),
+      robots_(findRobots(scene)) {}
 
 int TankControl::findBody(const std::string& name, const std::string& field) const {
   std::vector<std::string> names;
@@ -16,17 +32,31 @@ int TankControl::findBody(const std::string& name, const std::string& field) con
     if (body.name == name) return static_cast<int>(names.size());
     names.push_back(body.name);
   }
-  const std::string nearest =
-      names.empty() ? "but the scene has none" : "the nearest is \"" + nearestWord(name, names) + "\"";
-  throw RequestError(field + ": value \"" + name + "\": expected a body of the scene, " + nearest);
+  throw RequestError(field + ": value \"" + name + "\": expected a body of the scene, " + nearest(name, names));
+}
+
+const Robot& TankControl::findRobot(const std::string& name, const std::string& field) const {
+  std::vector<std::string> names;
+  for (const Robot& robot : robots_) {
+    if (robot.name == name) return robot;
+    names.push_back(robot.name);
+  }
+  throw RequestError(field + ": value \"" + name + "\": expected a robot, a body that others hang on by joints, " +
+                     nearest(name, names));
 }
 
 void TankControl::requireFree(int body, const std::string& field) const {
   const BodyDescription& description = simulation_.scene().bodies[body];
   if (description.motion == BodyMotion::kFree) return;
-  throw RequestError(field + ": value \"" + description.name + "\": this body is " +
-                     (description.motion == BodyMotion::kFixed ? "fixed" : "moved as the scene prescribes") +
+  throw RequestError(field + ": value \"" + description.name + "\": this body is " + movedBy(description) +
                      ": expected one with motion: free");
+}
+
+void TankControl::requireMovable(int body, const std::string& field) const {
+  if (canBeMoved(simulation_.scene(), body)) return;
+  const BodyDescription& description = simulation_.scene().bodies[body];
+  throw RequestError(field + ": value \"" + description.name + "\": this body is " + movedBy(description) +
+                     ": expected one with motion: free, or beyond a joint that is not prescribed");
 }
 
 Eigen::Isometry3d TankControl::framePose(const std::string& frame, const std::string& field) const {
@@ -52,16 +82,57 @@ WrenchCommands::FramePose TankControl::framePoses() const {
   };
 }
 
+void TankControl::requireInRange(const std::vector<int>& bodies, const std::vector<double>& positions,
+                                 const std::string& field) const {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const JointDescription& joint = *simulation_.scene().bodies[bodies[i]].joint;
+    if (positions[i] >= joint.lower && positions[i] <= joint.upper) continue;
+    std::ostringstream text;
+    text << field << "[" << i << "]: value " << positions[i] << " for \"" << joint.name << "\": expected "
+         << (joint.type == JointType::kRevolute ? "an angle in rad" : "a length in m") << " from " << joint.lower
+         << " to " << joint.upper;
+    throw RequestError(text.str());
+  }
+}
+
+void TankControl::setJointStates(const std::vector<int>& bodies, const std::vector<double>& positions,
+                                 const std::vector<double>& velocities) {
+  const std::vector<RigidBody> before = simulation_.bodies();
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    try {
+      simulation_.setJointState(bodies[i], positions[i], velocities[i]);
+    } catch (...) {
+      while (i-- > 0) {
+        const RigidBody& was = before[bodies[i]];
+        // What presses on a stop may be beyond it by what the solve leaves.
+        const double position = std::clamp(was.joint_position, was.joint->lower, was.joint->upper);
+        simulation_.setJointState(bodies[i], position, was.joint_velocity);
+      }
+      throw;
+    }
+  }
+}
+
 StepReport TankControl::step(std::vector<std::string>& lost) {
   const std::vector<Wrench> wrenches = wrenches_.evaluate(simulation_.time(), simulation_.bodies(), framePoses(), lost);
   for (std::size_t b = 0; b < wrenches.size(); ++b) simulation_.setWrench(static_cast<int>(b), wrenches[b]);
+  const std::vector<JointCommand> commands = joints_.evaluate(simulation_.time());
+  for (const Robot& robot : robots_) {
+    for (const int body : robot.jointed) {
+      if (!simulation_.scene().bodies[body].joint->prescribed) simulation_.setJointCommand(body, commands[body]);
+    }
+  }
   const StepReport report = simulation_.step();
-  if (report.committed()) wrenches_.commit();
+  if (report.committed()) {
+    wrenches_.commit();
+    joints_.commit();
+  }
   return report;
 }
 
 void TankControl::reset() {
   wrenches_.clear();
+  joints_.clear();
   simulation_.reset();
 }
 

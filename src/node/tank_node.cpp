@@ -27,6 +27,7 @@ TankNode::TankNode(ros::NodeHandle& global, ros::NodeHandle& local, ros::Callbac
       listener_(transforms_, global, false),
       foreign_frames_(global, control_.frames().movedFrames()),
       wrench_input_(local, control_, options.wrench_timeout, [this](const std::string& text) { refuse(text); }),
+      joint_input_(local, control_, options.wrench_timeout, [this](const std::string& text) { refuse(text); }),
       body_services_(local, control_, options.frames.world,
                      {[this] { return publisher_.stamp(); }, [this](const std::string& text) { refuse(text); },
                       [this] { stateChanged(); }}) {

@@ -18,6 +18,7 @@
 #include "node/body_services.h"
 #include "node/foreign_frames.h"
 #include "node/health_diagnostics.h"
+#include "node/joint_input.h"
 #include "node/node_options.h"
 #include "node/pacing.h"
 #include "node/progress_bar.h"
@@ -63,6 +64,7 @@ class TankNode {
   tf2_ros::TransformListener listener_;
   ForeignFrames foreign_frames_;
   WrenchInput wrench_input_;
+  JointInput joint_input_;
   BodyServices body_services_;
   std::vector<ros::ServiceServer> servers_;
   std::unique_ptr<ProgressBar> progress_;

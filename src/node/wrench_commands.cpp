@@ -1,16 +1,11 @@
 #include "node/wrench_commands.h"
 
-#include <algorithm>
-
+#include "node/command_slack.h"
 #include "node/request_error.h"
 #include "scene/shown_vector.h"
 
 namespace monolith {
 namespace {
-
-constexpr double kRoundOff = 1e-6;       // of a step, of its beginning
-constexpr double kStampRoundOff = 2e-9;  // s: ROS holds two times, whose difference a request is, in whole nanoseconds
-constexpr double kMostSlack = 0.25;      // of a step, where it is hardly longer than that
 
 bool isFinite(const Wrench& wrench) { return wrench.force.allFinite() && wrench.torque.allFinite(); }
 
@@ -30,9 +25,7 @@ void add(const Wrench& wrench, Wrench& sum) {
 }  // namespace
 
 WrenchCommands::WrenchCommands(int bodies, double time_step)
-    : slack_(std::min(std::max(kRoundOff * time_step, kStampRoundOff), kMostSlack * time_step)),
-      held_(bodies),
-      applied_(bodies) {}
+    : slack_(commandSlack(time_step)), held_(bodies), applied_(bodies) {}
 
 Wrench aboutCentreOfMass(const WrenchCommand& command, const Eigen::Isometry3d& X_WF, const Eigen::Vector3d& p_WBcm) {
   Wrench wrench;

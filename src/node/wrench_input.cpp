@@ -2,6 +2,7 @@
 
 #include "node/message_conversion.h"
 #include "node/request_error.h"
+#include "node/robots.h"
 
 namespace monolith {
 namespace {
@@ -14,9 +15,9 @@ WrenchInput::WrenchInput(ros::NodeHandle& local, TankControl& control, double ti
     : control_(control), timeout_sec_(timeout_sec), refuse_(std::move(refuse)) {
   const std::vector<BodyDescription>& bodies = control.simulation().scene().bodies;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    if (bodies[b].motion != BodyMotion::kFree) continue;
-    const std::string topic = local.resolveName(bodies[b].name + "/wrench");
     const int body = static_cast<int>(b);
+    if (!canBeMoved(control.simulation().scene(), body)) continue;
+    const std::string topic = local.resolveName(bodies[b].name + "/wrench");
     const boost::function<void(const geometry_msgs::WrenchStamped&)> callback =
         [this, body, topic](const geometry_msgs::WrenchStamped& message) { receive(message, body, topic); };
     subscribers_.push_back(local.subscribe<geometry_msgs::WrenchStamped, const geometry_msgs::WrenchStamped&>(

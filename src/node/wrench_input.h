@@ -1,6 +1,6 @@
 #pragma once
-// ~<body>/wrench of every free body: a wrench in any tf frame, whose force acts at that frame's origin, held for
-// ~wrench_timeout of simulated time. A later one replaces it. The stamp is not looked at.
+// ~<body>/wrench of every body that can be moved: a wrench in any tf frame, whose force acts at that frame's origin,
+// held for ~wrench_timeout of simulated time. A later one replaces it. The stamp is not looked at.
 
 #include <geometry_msgs/WrenchStamped.h>
 #include <ros/ros.h>

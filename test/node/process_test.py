@@ -378,7 +378,7 @@ class ProcessTest(unittest.TestCase):
 
     def testEveryShippedSceneRuns(self):
         scenes = [os.path.splitext(os.path.basename(file))[0] for file in glob.glob(PACKAGE + '/config/scenes/*.yaml')]
-        self.assertGreaterEqual(len(scenes), 3)
+        self.assertGreaterEqual(len(scenes), 4)
         for scene in sorted(scenes):
             code, output = self.finish('_scene:=' + scene, '_paced:=false', '_duration:=0.04')
             self.assertEqual(code, 0, output)

@@ -7,7 +7,8 @@ import time
 import rospy
 from geometry_msgs.msg import Point, Pose, Twist, Vector3, Wrench, WrenchStamped
 from monolith_tank.msg import BodyStates
-from monolith_tank.srv import (ApplyBodyWrench, ClearBodyWrenches, GetBodyState, SetBodyState, StepPhysics)
+from monolith_tank.srv import (ApplyBodyWrench, ClearBodyWrenches, GetBodyState, SetBodyState, SetJointState,
+                               StepPhysics)
 from std_srvs.srv import Empty
 
 NODE = '/monolith_tank'
@@ -64,6 +65,7 @@ class Tank:
         self.clear = service('clear_body_wrenches', ClearBodyWrenches)
         self.get = service('get_body_state', GetBodyState)
         self.set = service('set_body_state', SetBodyState)
+        self.setJoints = service('set_joint_state', SetJointState)
 
     def step(self, count=1):
         response = self.stepService(steps=count)

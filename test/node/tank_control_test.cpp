@@ -98,5 +98,41 @@ TEST_F(TankControlTest, WrenchesWhoseSumIsTooLargeAreRefused) {
   EXPECT_NE(refusal(Kind::kApplied, later), "");
 }
 
+// Two links in a dry tank, the second of which slides with a command that a step which fails does not use up.
+TEST(TankControlJoints, AShortEffortIsNotLostWithAStepThatFailsNorKeptByAReset) {
+  Scene scene;
+  scene.source = "test";
+  scene.tank.cell_width = 0.1;
+  scene.gravity.setZero();
+  scene.solver.threads = 1;
+  scene.bodies = {sphereBody("cart", 0.1, 1000.0, {0.5, 0.5, 0.5})};
+  scene.bodies[0].motion = BodyMotion::kFixed;
+  JointDescription rail;
+  rail.name = "rail";
+  rail.type = JointType::kPrismatic;
+  rail.X_PJ.translation() = Eigen::Vector3d(0.0, 0.3, 0.0);
+  hangOn(scene.bodies, 0, sphereBody("bob", 0.1, 1000.0, Eigen::Vector3d::Zero()), rail);
+  const double mass = scene.bodies[1].mass;
+  const tf2::BufferCore transforms;
+  TankControl control(scene, {"world", ""}, transforms);
+  std::vector<std::string> lost;
+  const auto velocity = [&] { return control.simulation().jointStates()[0].velocity; };
+  control.joints().holdEffort(1, 2.0 * mass, 0.001);
+  WrenchCommand push;
+  push.force.x() = 1e305;
+  push.end = 1.0;
+  control.wrenches().hold(1, push);
+  ASSERT_FALSE(control.step(lost).committed());
+  control.wrenches().clear();
+  ASSERT_TRUE(control.step(lost).committed());
+  EXPECT_NEAR(velocity(), 2.0 * scene.time_step, 1e-6);
+  ASSERT_TRUE(control.step(lost).committed());
+  EXPECT_NEAR(velocity(), 2.0 * scene.time_step, 1e-6);
+  control.joints().holdEffort(1, 2.0 * mass, 1.0);
+  control.reset();
+  ASSERT_TRUE(control.step(lost).committed());
+  EXPECT_EQ(velocity(), 0.0);
+}
+
 }  // namespace
 }  // namespace monolith

@@ -115,7 +115,7 @@ TEST(ShippedScenes, AllLoadWithoutOverlap) {
     expectNoOverlap(scene);
     ++found;
   }
-  EXPECT_GE(found, 3);
+  EXPECT_GE(found, 4);
 }
 
 TEST(ShippedScenes, DropFallsIntoAHalfFilledTank) {
@@ -132,6 +132,27 @@ TEST(ShippedScenes, DropFallsIntoAHalfFilledTank) {
   EXPECT_GE(kinds[Shape::Kind::kSphere], 2);
   EXPECT_GE(kinds[Shape::Kind::kBox], 1);
   EXPECT_GE(kinds[Shape::Kind::kMesh], 1);
+}
+
+TEST(ShippedScenes, ArmStirsFromRestBesideABallThatFloats) {
+  const Scene arm = scene("arm");
+  EXPECT_DOUBLE_EQ(arm.liquid.fill_level, 0.5 * arm.tank.size.z());
+  ASSERT_EQ(arm.bodies.size(), 4u);
+  EXPECT_EQ(arm.bodies[0].motion, BodyMotion::kFixed);
+  const JointDescription &shoulder = *arm.bodies[1].joint, &elbow = *arm.bodies[2].joint;
+  EXPECT_GT(shoulder.servo.stiffness, 0.0);
+  const PrescribedJointMotion& swing = elbow.prescribed.value();
+  EXPECT_NEAR(swing.rate + swing.amplitude * std::cos(swing.phase), 0.0, 1e-12);
+  // To the other side, within the joint's range, and back.
+  EXPECT_NEAR(elbow.position - 2.0 * swing.amplitude * std::sin(swing.phase), -elbow.position, 1e-12);
+  EXPECT_LT(std::abs(elbow.position), elbow.upper);
+  const Eigen::AlignedBox3d lower = bounds(arm.bodies[2].shapes[0], arm.bodies[2].X_WB);
+  EXPECT_LT(lower.min().z(), arm.liquid.fill_level - 4.0 * arm.tank.cell_width);
+  // A cap of this depth displaces as much liquid as it weighs.
+  const BodyDescription& ball = arm.bodies[3];
+  const double radius = ball.shapes[0].radius;
+  const double depth = arm.liquid.fill_level - (ball.X_WB.translation().z() - radius);
+  EXPECT_NEAR(arm.liquid.density * M_PI / 3.0 * depth * depth * (3.0 * radius - depth), ball.mass, 0.05 * ball.mass);
 }
 
 TEST(ShippedScenes, SettlingSphereIsCaseE1) {

@@ -226,7 +226,7 @@ TEST(Container, WhatTheGridDoesNotResolveIsTold) {
   EXPECT_NE(rough[0].find("body 'ball': 0.05 m, 2.5 cells"), std::string::npos) << rough[0];
   small.liquid.boxes.clear();
   EXPECT_TRUE(warnings(small).empty()) << "nothing depends on cells without liquid";
-  for (const std::string name : {"drop", "settling_sphere", "stack"}) {
+  for (const std::string name : {"arm", "drop", "settling_sphere", "stack"}) {
     const std::string file = std::string(MONOLITH_SOURCE_DIR) + "/config/scenes/" + name + ".yaml";
     for (const std::string& warning : warnings(loadScene(file, {}))) ADD_FAILURE() << warning;
   }
