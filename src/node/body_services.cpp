@@ -115,7 +115,11 @@ bool BodyServices::setJoints(monolith_tank::SetJointState::Request& request,
       requireNumbers(request.velocities, request.names, "velocities");
     }
     control_.requireInRange(bodies, request.positions, "positions");
-    control_.setJointStates(bodies, request.positions, request.velocities);
+    std::vector<JointState> states;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      states.push_back({bodies[i], request.positions[i], request.velocities[i], 0.0});
+    }
+    control_.simulation().setJointStates(states);
     hooks_.state_changed();
   });
 }

@@ -1,6 +1,5 @@
 #include "node/tank_control.h"
 
-#include <algorithm>
 #include <sstream>
 
 #include "node/request_error.h"
@@ -92,24 +91,6 @@ void TankControl::requireInRange(const std::vector<int>& bodies, const std::vect
          << (joint.type == JointType::kRevolute ? "an angle in rad" : "a length in m") << " from " << joint.lower
          << " to " << joint.upper;
     throw RequestError(text.str());
-  }
-}
-
-void TankControl::setJointStates(const std::vector<int>& bodies, const std::vector<double>& positions,
-                                 const std::vector<double>& velocities) {
-  const std::vector<RigidBody> before = simulation_.bodies();
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    try {
-      simulation_.setJointState(bodies[i], positions[i], velocities[i]);
-    } catch (...) {
-      while (i-- > 0) {
-        const RigidBody& was = before[bodies[i]];
-        // What presses on a stop may be beyond it by what the solve leaves.
-        const double position = std::clamp(was.joint_position, was.joint->lower, was.joint->upper);
-        simulation_.setJointState(bodies[i], position, was.joint_velocity);
-      }
-      throw;
-    }
   }
 }
 

@@ -45,10 +45,6 @@ class TankControl {
   // RequestError unless the positions are within the limits of the joints, given by the bodies beyond them.
   void requireInRange(const std::vector<int>& bodies, const std::vector<double>& positions,
                       const std::string& field) const;
-  // States of joints, one after the other: all or, if one is refused, none. Throws what Simulation::setJointState()
-  // does.
-  void setJointStates(const std::vector<int>& bodies, const std::vector<double>& positions,
-                      const std::vector<double>& velocities);
 
   // One output step with wrenches and joint commands as they are now. Messages of wrenches given up are appended to
   // `lost`. A step that throws is reported as one that was not committed. What was to act in a step that was not

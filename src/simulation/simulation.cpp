@@ -6,6 +6,7 @@
 #include <cmath>
 #include <exception>
 #include <limits>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -111,7 +112,12 @@ void Simulation::Impl::initialise() {
   for (RigidBody& body : state.bodies) {
     if (body.joint && body.joint->prescribed) body.joint_velocity = prescribedVelocity(*body.joint->prescribed, 0.0);
   }
-  moveAssemblies(state.bodies);
+  const std::vector<int> roots = rootsOf(state.bodies);
+  std::set<int> assemblies;
+  for (std::size_t b = 0; b < roots.size(); ++b) {
+    if (state.bodies[b].joint) assemblies.insert(roots[b]);
+  }
+  for (const int root : assemblies) moveAssembly(root, state.bodies);
   const std::string overlaps = describeOverlaps(state.bodies, walls, kOverlapAtStart * grid.h);
   if (!overlaps.empty())
     throw SceneError(scene.source + ": bodies overlap at the start, expected them apart:\n" + overlaps);
@@ -154,12 +160,16 @@ void Simulation::Impl::initialise() {
   tellModel(report.model);
 }
 
-// What hangs on others, to where they are and as they move.
-void Simulation::Impl::moveAssemblies(std::vector<RigidBody>& bodies) const {
-  placeOnJoints(walls.period(), bodies);
-  moveWithJoints(bodies);
-  for (RigidBody& body : bodies) {
-    if (body.joint) body.p_WBcm = walls.imageInside(body.p_WBcm);
+// What hangs on a body, to where that is and as it moves.
+void Simulation::Impl::moveAssembly(int root, std::vector<RigidBody>& bodies) const {
+  std::vector<RigidBody> moved = bodies;
+  placeOnJoints(walls.period(), moved);
+  moveWithJoints(moved);
+  const std::vector<int> roots = rootsOf(bodies);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (!bodies[b].joint || roots[b] != root) continue;
+    bodies[b] = moved[b];
+    bodies[b].p_WBcm = walls.imageInside(bodies[b].p_WBcm);
   }
 }
 
@@ -350,8 +360,11 @@ StepReport Simulation::step() {
 
 std::vector<BodyState> Simulation::bodyStates() const {
   std::vector<BodyState> out;
-  for (std::size_t b = 0; b < impl_->state.bodies.size(); ++b) {
-    const RigidBody& body = impl_->state.bodies[b];
+  // As the joints move now: a step leaves twists for the poses that it solved at, whose momentum is the bodies'.
+  std::vector<RigidBody> bodies = impl_->state.bodies;
+  moveWithJoints(bodies);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const RigidBody& body = bodies[b];
     BodyState s;
     s.X_WB = body.pose();
     s.velocity = body.velocityAt(s.X_WB.translation());
@@ -405,7 +418,8 @@ void Simulation::setJointCommand(int body, const JointCommand& command) {
 
 // Takes the state that was given to `changed`, and to what hangs on it.
 void Simulation::Impl::setBodies(std::vector<RigidBody> bodies, int changed) {
-  moveAssemblies(bodies);
+  const int root = rootsOf(bodies)[changed];
+  moveAssembly(root, bodies);
   const std::string& name = bodies[changed].name;
   for (const RigidBody& body : bodies) {
     if (body.p_WBcm.allFinite() && body.twist.allFinite() && std::isfinite(kineticEnergy(body))) continue;
@@ -413,7 +427,7 @@ void Simulation::Impl::setBodies(std::vector<RigidBody> bodies, int changed) {
                                 " m, its velocity " + shownVector(body.twist.head<3>()) +
                                 " m/s: expected finite numbers, the energy too");
   }
-  const std::string overlaps = describeOverlaps(bodies, walls, kOverlapTolerance * grid.h, changed);
+  const std::string overlaps = describeOverlaps(bodies, walls, kOverlapTolerance * grid.h, root);
   if (!overlaps.empty()) {
     throw std::invalid_argument("state of '" + name +
                                 "': expected a pose inside the tank and clear of other bodies:\n" + overlaps);
@@ -450,20 +464,29 @@ void Simulation::setBodyState(int body, const Eigen::Isometry3d& X_WB, const Eig
   m.setBodies(std::move(bodies), body);
 }
 
-void Simulation::setJointState(int body, double position, double velocity) {
+void Simulation::setJointStates(const std::vector<JointState>& states) {
   Impl& m = *impl_;
-  m.requireJoint(body);
   std::vector<RigidBody> bodies = m.state.bodies;
-  const JointDescription& joint = *bodies[body].joint;
-  if (!std::isfinite(position) || !std::isfinite(velocity) || position < joint.lower || position > joint.upper) {
-    std::ostringstream text;
-    text << "state of joint '" << joint.name << "': position " << position << ", velocity " << velocity
-         << ": expected finite numbers, the position from " << joint.lower << " to " << joint.upper;
-    throw std::invalid_argument(text.str());
+  const std::vector<int> roots = rootsOf(bodies);
+  for (const JointState& set : states) {
+    m.requireJoint(set.body);
+    if (roots[set.body] != roots[states.front().body]) {
+      throw std::invalid_argument("joints of '" + bodies[set.body].name + "' and '" + bodies[states.front().body].name +
+                                  "': expected those of one robot");
+    }
+    const JointDescription& joint = *bodies[set.body].joint;
+    if (!std::isfinite(set.position) || !std::isfinite(set.velocity) || set.position < joint.lower ||
+        set.position > joint.upper) {
+      std::ostringstream text;
+      text << "state of joint '" << joint.name << "': position " << set.position << ", velocity " << set.velocity
+           << ": expected finite numbers, the position from " << joint.lower << " to " << joint.upper;
+      throw std::invalid_argument(text.str());
+    }
+    bodies[set.body].joint_position = set.position;
+    bodies[set.body].joint_velocity = set.velocity;
   }
-  bodies[body].joint_position = position;
-  bodies[body].joint_velocity = velocity;
-  m.setBodies(std::move(bodies), body);
+  // Its whole robot is looked at.
+  if (!states.empty()) m.setBodies(std::move(bodies), states.front().body);
 }
 
 void Simulation::setLiquidVelocity(const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& velocity) {

@@ -77,10 +77,11 @@ class Simulation {
   void setBodyState(int body, const Eigen::Isometry3d& X_WB, const Eigen::Vector3d& velocity,
                     const Eigen::Vector3d& angular_velocity);
 
-  // Sets the joint by which a body hangs on another; servo and commands stay as they are. Throws std::invalid_argument
-  // of a body without a joint or with one that is prescribed, unless finite and within the joint's range, and unless
-  // all that it moves is inside the tank and clear of the other bodies.
-  void setJointState(int body, double position, double velocity);
+  // Sets joints of bodies that hang on one root, all at once; efforts are not looked at, servos and commands stay as
+  // they are. Throws std::invalid_argument, with nothing changed, of a body without a joint or with one that is
+  // prescribed, unless finite and within the joint's range, and unless all that they move is inside the tank and clear
+  // of the other bodies.
+  void setJointStates(const std::vector<JointState>& states);
 
   // Gives the liquid, wherever it is, this velocity (m/s) of a point in W; of what diverges the next step takes the
   // divergence. What sticks to a body moves like the points around it. Throws std::invalid_argument unless finite.

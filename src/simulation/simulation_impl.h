@@ -76,7 +76,7 @@ struct Simulation::Impl {
   void takeJointMeans(const StepWeights& w);
   void moveLiquid(const StepWeights& w, StepReport& report);
   void enterImages();
-  void moveAssemblies(std::vector<RigidBody>& bodies) const;
+  void moveAssembly(int root, std::vector<RigidBody>& bodies) const;
   void setBodies(std::vector<RigidBody> bodies, int changed);
   void requireJoint(int body) const;
   void prepareGeometry();

@@ -248,14 +248,14 @@ TEST(Joint, WhatHangsOnABodyGoesWithIt) {
   EXPECT_TRUE((simulation.bodies()[0].pose().inverse() * simulation.bodies()[1].pose()).isApprox(between, 1e-12));
   EXPECT_LT((simulation.bodies()[1].velocityAt(to.translation()) - Vector3d(0.1, 0.0, 0.0)).norm(), 1e-12);
   EXPECT_THROW(simulation.setBodyState(1, to, Vector3d::Zero(), Vector3d::Zero()), std::invalid_argument);
-  simulation.setJointState(1, -0.6, 0.5);
+  simulation.setJointStates({{1, -0.6, 0.5, 0.0}});
   EXPECT_EQ(joint(simulation).position, -0.6);
   EXPECT_EQ(joint(simulation).velocity, 0.5);
   const Eigen::Quaterniond relative = simulation.bodies()[1].q_WB.conjugate() * simulation.bodies()[0].q_WB;
   EXPECT_NEAR(Eigen::AngleAxisd(relative).angle(), 0.6, 1e-12);
-  EXPECT_THROW(simulation.setJointState(1, 1.2, 0.0), std::invalid_argument);
-  EXPECT_THROW(simulation.setJointState(0, 0.0, 0.0), std::invalid_argument);
-  EXPECT_THROW(simulation.setJointState(1, std::nan(""), 0.0), std::invalid_argument);
+  EXPECT_THROW(simulation.setJointStates({{1, 1.2, 0.0, 0.0}}), std::invalid_argument);
+  EXPECT_THROW(simulation.setJointStates({{0, 0.0, 0.0, 0.0}}), std::invalid_argument);
+  EXPECT_THROW(simulation.setJointStates({{1, std::nan(""), 0.0, 0.0}}), std::invalid_argument);
   EXPECT_THROW(simulation.setJointCommand(1, {std::nan(""), 0.0, 0.0}), std::invalid_argument);
   to.translation().z() = 0.2;  // the bar would be in the floor
   EXPECT_THROW(simulation.setBodyState(0, to, Vector3d::Zero(), Vector3d::Zero()), std::invalid_argument);
