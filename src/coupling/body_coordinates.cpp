@@ -81,11 +81,13 @@ void BodyCoordinates::set(const std::vector<RigidBody>& bodies, const std::vecto
     size += assembly.count;
     if (assembly.count > 0) assemblies_.push_back(assembly);
   }
-  std::vector<Triplet> S, P;
+  std::vector<Triplet> S, P, Q, Q_inverse;
   for (const Assembly& assembly : assemblies_) {
     if (assembly.bodies.size() == 1) {
       addBlock(6 * place[assembly.bodies[0]], assembly.first, Matrix6d::Identity(), S);
       addBlock(assembly.first, 6 * place[assembly.bodies[0]], Matrix6d::Identity(), P);
+      addBlock(assembly.first, assembly.first, Matrix6d::Identity(), Q);
+      addBlock(assembly.first, assembly.first, Matrix6d::Identity(), Q_inverse);
       continue;
     }
     const JointVelocities q(bodies, assembly);
@@ -100,6 +102,8 @@ void BodyCoordinates::set(const std::vector<RigidBody>& bodies, const std::vecto
     const Eigen::MatrixXd L = weight.llt().matrixL();
     const Eigen::MatrixXd to_q =
         L.transpose().triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(assembly.count, assembly.count));
+    addBlock(assembly.first, assembly.first, to_q, Q);
+    addBlock(assembly.first, assembly.first, L.transpose(), Q_inverse);
     for (std::size_t i = 0; i < assembly.bodies.size(); ++i) {
       const int b = assembly.bodies[i];
       if (place[b] < 0) continue;
@@ -113,10 +117,15 @@ void BodyCoordinates::set(const std::vector<RigidBody>& bodies, const std::vecto
     }
   }
   const auto twists = static_cast<Eigen::Index>(6 * free_.size());
-  S_.resize(twists, size);
-  S_.setFromTriplets(S.begin(), S.end());
-  P_.resize(size, twists);
-  P_.setFromTriplets(P.begin(), P.end());
+  const auto fill = [](Eigen::Index rows, Eigen::Index columns, const std::vector<Triplet>& from,
+                       Eigen::SparseMatrix<double>& to) {
+    to.resize(rows, columns);
+    to.setFromTriplets(from.begin(), from.end());
+  };
+  fill(twists, size, S, S_);
+  fill(size, twists, P, P_);
+  fill(size, size, Q, Q_);
+  fill(size, size, Q_inverse, Q_inverse_);
 }
 
 std::vector<Vector6d> BodyCoordinates::carried(const std::vector<RigidBody>& bodies,

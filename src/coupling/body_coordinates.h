@@ -38,6 +38,9 @@ class BodyCoordinates {
   std::size_t bodies() const { return joint_.size(); }
   const Eigen::SparseMatrix<double>& S() const { return S_; }
   const Eigen::SparseMatrix<double>& P() const { return P_; }
+  // q of y, and y of q: of what is known of q while bodies move and y is mixed anew.
+  const Eigen::SparseMatrix<double>& Q() const { return Q_; }
+  const Eigen::SparseMatrix<double>& Q_inverse() const { return Q_inverse_; }
   // Of free bodies, but for those whose motion is given altogether.
   const std::vector<Assembly>& assemblies() const { return assemblies_; }
   // Whether body b has a joint that is free to move, and then its velocity: q_b = row . y.
@@ -60,7 +63,7 @@ class BodyCoordinates {
   std::vector<int> free_;                           // bodies
   std::vector<Eigen::SparseVector<double>> joint_;  // rows, of all bodies; empty without an unknown
   std::vector<Assembly> assemblies_;
-  Eigen::SparseMatrix<double> S_, P_;
+  Eigen::SparseMatrix<double> S_, P_, Q_, Q_inverse_;
 };
 
 }  // namespace monolith

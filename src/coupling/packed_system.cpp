@@ -81,13 +81,16 @@ void PackedSystem::updateSchur() {
   if (!same) {
     resistance_ = scale_.asDiagonal() * BodySchur::resistance(lattice(), columns_single_, twists_of_, preconditioner_) *
                   scale_.asDiagonal();
+    const Eigen::SparseMatrix<double>& mix = p.coordinates.Q_inverse();
+    resistance_ = (mix.transpose() * resistance_ * mix).eval();
     resistance_of_ = p.free;
     resistance_number_ = p.viscous_number;
     fresh_cost_ = lost_ = 0.0;
     stale_ = false;
   }
   const Eigen::VectorXd weight = resistanceWeight();
-  S_ = weight.asDiagonal() * resistance_ * weight.asDiagonal();
+  const Eigen::MatrixXd mixed = p.coordinates.Q().transpose() * resistance_ * p.coordinates.Q();
+  S_ = weight.asDiagonal() * mixed * weight.asDiagonal();
   S_ += bodies_ - own_resistance_;
   S_inverse_ = S_.ldlt().solve(Eigen::MatrixXd::Identity(bodySize(), bodySize()));
 }
@@ -120,6 +123,8 @@ void PackedSystem::adoptResponse(const Eigen::MatrixXd& K) {
   Eigen::VectorXd weight = resistanceWeight();
   for (double& w : weight) w = w > 0.0 ? 1.0 / w : 0.0;
   resistance_ = weight.asDiagonal() * (S_ - bodies_ + own_resistance_) * weight.asDiagonal();
+  const BodyCoordinates& unknowns = problem_->coordinates;
+  resistance_ = (unknowns.Q_inverse().transpose() * resistance_ * unknowns.Q_inverse()).eval();
   fresh_cost_ = lost_ = 0.0;
   stale_ = false;
 }

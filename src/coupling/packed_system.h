@@ -135,7 +135,7 @@ class PackedSystem {
   Eigen::SparseMatrix<double> twists_of_;  // from the unknowns to the twists, in the units of the columns
   Eigen::MatrixXd bodies_;                 // A_vv of the unknowns with inertia
   Eigen::MatrixXd own_resistance_;         // and without
-  Eigen::MatrixXd resistance_;             // of the bodies, physical units
+  Eigen::MatrixXd resistance_;             // of the bodies to the velocities q of body_coordinates.h, physical units
   std::vector<int> resistance_of_;
   double resistance_number_ = -1.0;
   // Of the first solve since set(): later ones have fewer decades to go.

@@ -63,16 +63,22 @@ SolidDistance solidDistance(const MacGrid& grid, const std::vector<RigidBody>& b
   };
 }
 
-bool oscillates(const RigidBody& body) {
-  return body.motion == BodyMotion::kPrescribed && !body.prescribed.amplitude.isZero(0.0);
+// Hz, of what is prescribed to a body or its joint; 0: nothing that oscillates.
+double oscillationOf(const RigidBody& body) {
+  if (body.joint && body.joint->prescribed && body.joint->prescribed->amplitude != 0.0) {
+    return body.joint->prescribed->frequency;
+  }
+  const bool prescribed = body.motion == BodyMotion::kPrescribed && !body.prescribed.amplitude.isZero(0.0);
+  return prescribed ? body.prescribed.frequency : 0.0;
 }
 
 // Empty if a step may have as many sub-steps as a prescribed oscillation asks for.
 std::string describeFastOscillation(const RigidBody& body, double time_step) {
   const double highest = kLargestSubsteps / (kSubstepsInPeriod * time_step);
-  if (!oscillates(body) || body.prescribed.frequency <= highest) return "";
+  const double frequency = oscillationOf(body);
+  if (frequency <= highest) return "";
   std::ostringstream text;
-  text << "body '" << body.name << "': prescribed.frequency: value " << body.prescribed.frequency
+  text << "body '" << body.name << "': prescribed.frequency: value " << frequency
        << " Hz: what it drives is inaccurate; expected at most " << highest << " Hz, so that time_step/"
        << kLargestSubsteps << ", the shortest sub-step, is a tenth of the period";
   return text.str();
@@ -183,7 +189,8 @@ void Simulation::Impl::prepareGeometry() {
 double Simulation::Impl::longestStep() const {
   double longest = scene.solver.cfl * grid.h / std::max(bodySpeed(), state.liquid_speed);
   for (const RigidBody& body : state.bodies) {
-    if (oscillates(body)) longest = std::min(longest, 1.0 / (kSubstepsInPeriod * body.prescribed.frequency));
+    const double frequency = oscillationOf(body);
+    if (frequency > 0.0) longest = std::min(longest, 1.0 / (kSubstepsInPeriod * frequency));
   }
   const double gravity = scene.gravity.norm();
   if (!hasSurface() || gravity == 0.0) return longest;
