@@ -78,6 +78,11 @@ Vector6d meanPrescribedTwist(const RigidBody& body, double time, double dt) {
   return atCentre(body, motion.twist + motion.amplitude * mean);
 }
 
+double kineticEnergy(const RigidBody& body) {
+  const Eigen::Vector3d spin = body.twist.tail<3>();
+  return 0.5 * body.mass * body.twist.head<3>().squaredNorm() + 0.5 * spin.dot(body.worldInertia() * spin);
+}
+
 RigidBody makeRigidBody(const BodyDescription& description, double distance_resolution) {
   RigidBody body;
   body.name = description.name;

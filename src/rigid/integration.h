@@ -42,6 +42,9 @@ Vector6d prescribedTwist(const RigidBody& body, double time);
 // rotation changes, by second order.
 Vector6d meanPrescribedTwist(const RigidBody& body, double time, double dt);
 
+// J
+double kineticEnergy(const RigidBody& body);
+
 // The body at time 0. `distance_resolution` (m): see geometry/shape.h.
 RigidBody makeRigidBody(const BodyDescription& description, double distance_resolution);
 

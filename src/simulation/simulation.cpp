@@ -12,7 +12,6 @@
 
 #include "fluid/advection.h"
 #include "rigid/overlap.h"
-#include "scene/shown_vector.h"
 #include "simulation/resolution.h"
 #include "simulation/simulation_impl.h"
 
@@ -20,10 +19,8 @@ namespace monolith {
 namespace {
 
 constexpr double kMeshResolution = 0.5;     // of a cell: spacing of the distance grid of meshes
-// Of a cell. What overlaps is pushed apart, and the speed that it takes stays: at the start no more than round-off of
-// poses; of a state that is set, which may be one that was simulated, as much as contacts leave.
+// Of a cell. What overlaps is pushed apart, and the speed that it takes stays: no more than round-off of poses.
 constexpr double kOverlapAtStart = 1e-3;
-constexpr double kOverlapTolerance = 0.05;
 constexpr int kLargestSubsteps = 64;
 // Sub-steps in a period of what oscillates as prescribed: of fewer the velocities do not tell how it moves.
 constexpr double kSubstepsInPeriod = 10.0;
@@ -32,12 +29,6 @@ constexpr double kSubstepsInPeriod = 10.0;
 constexpr int kMostRetries = 6;
 // Parts of the very first step: the two of first order are short enough not to be seen in what follows.
 constexpr std::array<double, 2> kFirstParts = {0.25, 0.25};
-
-// J
-double kineticEnergy(const RigidBody& body) {
-  const Eigen::Vector3d spin = body.twist.tail<3>();
-  return 0.5 * body.mass * body.twist.head<3>().squaredNorm() + 0.5 * spin.dot(body.worldInertia() * spin);
-}
 
 // Of points in W from the nearest body, in cell widths; infinite where that is more than a cell.
 SolidDistance solidDistance(const MacGrid& grid, const std::vector<RigidBody>& bodies) {
@@ -164,19 +155,6 @@ void Simulation::Impl::initialise() {
   }
   measureState(report);
   tellModel(report.model);
-}
-
-// What hangs on a body, to where that is and as it moves.
-void Simulation::Impl::moveAssembly(int root, std::vector<RigidBody>& bodies) const {
-  std::vector<RigidBody> moved = bodies;
-  placeOnJoints(walls.period(), moved);
-  moveWithJoints(moved);
-  const std::vector<int> roots = rootsOf(bodies);
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    if (!bodies[b].joint || roots[b] != root) continue;
-    bodies[b] = moved[b];
-    bodies[b].p_WBcm = walls.imageInside(bodies[b].p_WBcm);
-  }
 }
 
 void Simulation::Impl::prepareGeometry() {
@@ -383,17 +361,6 @@ std::vector<BodyState> Simulation::bodyStates() const {
   return out;
 }
 
-void Simulation::setWrench(int body, const Wrench& wrench) {
-  if (body < 0 || body >= static_cast<int>(impl_->wrenches.size())) {
-    throw std::invalid_argument("body index " + std::to_string(body) + ": expected 0 to " +
-                                std::to_string(static_cast<int>(impl_->wrenches.size()) - 1));
-  }
-  if (!wrench.force.allFinite() || !wrench.torque.allFinite()) {
-    throw std::invalid_argument("wrench on '" + impl_->state.bodies[body].name + "': expected finite numbers");
-  }
-  impl_->wrenches[body] = wrench;
-}
-
 std::vector<JointState> Simulation::jointStates() const {
   std::vector<JointState> out;
   const SimulationState& state = impl_->state;
@@ -403,116 +370,6 @@ std::vector<JointState> Simulation::jointStates() const {
     out.push_back({static_cast<int>(b), body.joint_position, body.joint_velocity, state.mean_effort[b]});
   }
   return out;
-}
-
-void Simulation::Impl::requireJoint(int body) const {
-  const std::vector<RigidBody>& bodies = state.bodies;
-  if (body >= 0 && body < static_cast<int>(bodies.size()) && bodies[body].joint && !bodies[body].joint->prescribed) {
-    return;
-  }
-  throw std::invalid_argument("joint of body index " + std::to_string(body) +
-                              ": expected a body that hangs on another by a joint whose motion is not prescribed");
-}
-
-void Simulation::setJointCommand(int body, const JointCommand& command) {
-  impl_->requireJoint(body);
-  const std::vector<RigidBody>& bodies = impl_->state.bodies;
-  if (!std::isfinite(command.effort) || !std::isfinite(command.position) || !std::isfinite(command.velocity)) {
-    throw std::invalid_argument("command for joint '" + bodies[body].joint->name + "': expected finite numbers");
-  }
-  impl_->commands[body] = command;
-}
-
-// Takes the state that was given to `changed`, and to what hangs on it.
-void Simulation::Impl::setBodies(std::vector<RigidBody> bodies, int changed) {
-  const int root = rootsOf(bodies)[changed];
-  moveAssembly(root, bodies);
-  const std::string& name = bodies[changed].name;
-  for (const RigidBody& body : bodies) {
-    if (body.p_WBcm.allFinite() && body.twist.allFinite() && std::isfinite(kineticEnergy(body))) continue;
-    throw std::invalid_argument("state of '" + body.name + "': centre of mass at " + shownVector(body.p_WBcm) +
-                                " m, its velocity " + shownVector(body.twist.head<3>()) +
-                                " m/s: expected finite numbers, the energy too");
-  }
-  const std::string overlaps = describeOverlaps(bodies, walls, kOverlapTolerance * grid.h, root);
-  if (!overlaps.empty()) {
-    throw std::invalid_argument("state of '" + name +
-                                "': expected a pose inside the tank and clear of other bodies:\n" + overlaps);
-  }
-  state.bodies = std::move(bodies);
-  state.euler_steps = kStepsAfterSet;
-  prepareGeometry();
-  measureState(report);
-}
-
-void Simulation::setBodyState(int body, const Eigen::Isometry3d& X_WB, const Eigen::Vector3d& velocity,
-                              const Eigen::Vector3d& angular_velocity) {
-  Impl& m = *impl_;
-  if (body < 0 || body >= static_cast<int>(m.state.bodies.size())) {
-    throw std::invalid_argument("body index " + std::to_string(body) + ": expected 0 to " +
-                                std::to_string(static_cast<int>(m.state.bodies.size()) - 1));
-  }
-  const std::string& name = m.state.bodies[body].name;
-  if (!X_WB.matrix().allFinite() || !velocity.allFinite() || !angular_velocity.allFinite()) {
-    throw std::invalid_argument("state of '" + name + "': expected finite numbers");
-  }
-  if (m.state.bodies[body].joint) {
-    throw std::invalid_argument("state of '" + name + "': it hangs on '" +
-                                m.state.bodies[rootsOf(m.state.bodies)[body]].name +
-                                "', expected that one, or a body without a joint");
-  }
-  std::vector<RigidBody> bodies = m.state.bodies;
-  RigidBody& moved = bodies[body];
-  moved.q_WB = Eigen::Quaterniond(X_WB.linear()).normalized();
-  const Eigen::Vector3d to_centre = moved.q_WB * moved.p_BBcm;
-  moved.p_WBcm = m.walls.imageInside(X_WB.translation() + to_centre);
-  moved.twist.head<3>() = velocity + angular_velocity.cross(to_centre);
-  moved.twist.tail<3>() = angular_velocity;
-  m.setBodies(std::move(bodies), body);
-}
-
-void Simulation::setJointStates(const std::vector<JointState>& states) {
-  Impl& m = *impl_;
-  std::vector<RigidBody> bodies = m.state.bodies;
-  const std::vector<int> roots = rootsOf(bodies);
-  for (const JointState& set : states) {
-    m.requireJoint(set.body);
-    if (roots[set.body] != roots[states.front().body]) {
-      throw std::invalid_argument("joints of '" + bodies[set.body].name + "' and '" + bodies[states.front().body].name +
-                                  "': expected those of one robot");
-    }
-    const JointDescription& joint = *bodies[set.body].joint;
-    if (!std::isfinite(set.position) || !std::isfinite(set.velocity) || set.position < joint.lower ||
-        set.position > joint.upper) {
-      std::ostringstream text;
-      text << "state of joint '" << joint.name << "': position " << set.position << ", velocity " << set.velocity
-           << ": expected finite numbers, the position from " << joint.lower << " to " << joint.upper;
-      throw std::invalid_argument(text.str());
-    }
-    bodies[set.body].joint_position = set.position;
-    bodies[set.body].joint_velocity = set.velocity;
-  }
-  // Its whole robot is looked at.
-  if (!states.empty()) m.setBodies(std::move(bodies), states.front().body);
-}
-
-void Simulation::setLiquidVelocity(const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& velocity) {
-  FaceField<double> faces;
-  setVelocity(impl_->grid, velocity, faces);
-  SimulationState& state = impl_->state;
-  std::vector<Vector6d> stuck_twists;
-  for (const RigidBody& body : state.bodies) {
-    // Of a sphere that is its surface.
-    stuck_twists.push_back(rigidMotion(velocity, body.p_WBcm, body.radius() / std::sqrt(3.0)));
-    if (!stuck_twists.back().allFinite()) {
-      throw std::invalid_argument("velocity of the liquid around '" + body.name + "': expected finite numbers");
-    }
-  }
-  extrapolateVelocity(impl_->grid.lattice, 0, impl_->noSlip(), state.known, {&faces});  // beyond the walls only
-  state.coupled.velocity = std::move(faces);
-  state.liquid_speed = largestSpeed(state.coupled.velocity);
-  state.stuck_twists = std::move(stuck_twists);
-  state.euler_steps = kStepsAfterSet;
 }
 
 std::vector<SurfacePoint> Simulation::surfacePoints() const {

@@ -22,19 +22,9 @@ constexpr double kSteepestVelocity = 0.03;
 constexpr double kSteepestRate = 0.15;
 // Of sqrt(gravity h), by which the surface may be faster than limitCutFaces() has it: what is limited is no wave.
 constexpr double kSlack = 0.3;
-constexpr int kMostDriveRounds = 8;
 // After the step of an impact one of backward Euler, for the next to continue.
 constexpr int kStepsAfterImpact = 1;
 constexpr double kRoundOff = 1e-6;  // of a length of sub-steps that just fits
-
-// Of a free body by a wrench over dt.
-Vector6d twistChange(const RigidBody& body, const Wrench& wrench, double dt) {
-  Vector6d out = Vector6d::Zero();
-  if (body.motion != BodyMotion::kFree) return out;
-  out.head<3>() = dt / body.mass * wrench.force;
-  out.tail<3>() = dt * body.worldInertia().ldlt().solve(wrench.torque);
-  return out;
-}
 
 }  // namespace
 
@@ -54,16 +44,6 @@ double Simulation::Impl::contactReach(double dt) const {
     reach = std::max(reach, state.bodies[b].fastestPoint(next.free_twists[b]));
   }
   return std::min(2.0 * reach * dt, scene.tank.size.norm()) + 0.05 * grid.h;
-}
-
-// From outside, held over the step.
-std::vector<Wrench> Simulation::Impl::actingWrenches() const {
-  std::vector<Wrench> out = wrenches;
-  for (std::size_t b = 0; b < out.size(); ++b) {
-    const double effort = JointDrives::heldEffort(state.bodies[b], commands[b]);
-    if (effort != 0.0) addJointEffort(state.bodies, b, effort, out);
-  }
-  return out;
 }
 
 BodyPlan Simulation::Impl::planBodies(const StepWeights& w, const std::vector<char>& closing,
@@ -152,40 +132,6 @@ void Simulation::Impl::guess(const StepWeights& w, const FaceField<double>& free
   }
 }
 
-// What joints' drives do depends on the motion where they are limited: solved again until it is what was assumed.
-CoupledReport Simulation::Impl::solveWithDrives(const StepWeights& w, JointDrives& drives,
-                                                const std::function<CoupledReport(FaceField<double>&)>& solve) {
-  const std::vector<Vector6d> free_twists = plan.free_twists;
-  const std::size_t count = state.bodies.size();
-  CoupledReport all;
-  for (int round = 0; round < kMostDriveRounds; ++round) {
-    if (round > 0) system.changeJointResistance(drives.resistances());
-    std::vector<Wrench> efforts(count);
-    for (std::size_t b = 0; b < count; ++b) {
-      const double effort = drives.effort(b);
-      if (effort != 0.0) addJointEffort(plan.bodies, b, effort, efforts);
-    }
-    for (std::size_t b = 0; b < count; ++b) {
-      plan.free_twists[b] = free_twists[b] + twistChange(plan.bodies[b], efforts[b], w.dt);
-    }
-    FaceField<double> right = scratch.free_velocity;
-    CoupledReport report = solve(right);
-    plan.free_twists = free_twists;
-    report.iterations += all.iterations;
-    report.solves += all.solves;
-    report.friction_iterations += all.friction_iterations;
-    all = report;
-    if (all.status != SolveStatus::kConverged) return all;
-    std::vector<double> velocities(count);
-    for (std::size_t b = 0; b < count; ++b) velocities[b] = jointVelocity(plan.bodies, b, scratch.other.twists);
-    scratch.joint_modes = drives.modes();
-    if (drives.agree(velocities)) return all;
-  }
-  all.status = SolveStatus::kNotConverged;
-  all.message = "what servos and friction do in the joints did not settle in " + std::to_string(all.solves) + " solves";
-  return all;
-}
-
 CoupledReport Simulation::Impl::solveWithLiquid(const StepWeights& w, const std::vector<Contact>& contacts,
                                                 const std::vector<JointStop>& stops, StepReport& step) {
   const LiquidDescription& liquid = scene.liquid;
@@ -260,46 +206,6 @@ void Simulation::Impl::takeMeans(const StepWeights& w, const std::vector<Wrench>
     state.mean_contact[b].force += share * contact.force;
     state.mean_contact[b].torque += share * contact.torque;
   }
-}
-
-// Impulses of the joints on each body: what the solve adds to its momentum and neither liquid nor contact does. What
-// next step carries on is that but for what sets in and ends at once, stops and friction.
-void Simulation::Impl::takeJointMeans(const StepWeights& w) {
-  const std::size_t count = plan.bodies.size();
-  std::vector<Wrench> joints(count);
-  const CoupledState& solved = scratch.other;
-  for (std::size_t b = 0; b < count; ++b) {
-    const RigidBody& body = plan.bodies[b];
-    if (body.motion != BodyMotion::kFree) continue;
-    const Vector6d change = solved.twists[b] - plan.free_twists[b];
-    const double part = w.implicit / w.dt;
-    joints[b].force = body.mass / w.dt * change.head<3>() - part * (solved.liquid[b].force + solved.contact[b].force);
-    joints[b].torque =
-        body.worldInertia() / w.dt * change.tail<3>() - part * (solved.liquid[b].torque + solved.contact[b].torque);
-  }
-  const JointDrives drives(state.bodies, commands, w, scratch.joint_modes);
-  for (const StopForce& stop : solved.contact_forces.stops) {
-    addJointEffort(plan.bodies, stop.body, -w.implicit / w.dt * stop.sign * stop.effort, joints);
-  }
-  const double share = w.dt / scene.time_step;
-  for (std::size_t b = 0; b < count; ++b) {
-    const double velocity = jointVelocity(plan.bodies, b, solved.twists);
-    const double friction = drives.frictionEffort(b, velocity);
-    if (friction != 0.0) addJointEffort(plan.bodies, b, -friction, joints);
-    joints[b].force += w.carry * state.joints[b].force;
-    joints[b].torque += w.carry * state.joints[b].torque;
-    const double servo = drives.servoEffort(b, velocity);
-    state.mean_effort[b] += share * (JointDrives::heldEffort(state.bodies[b], commands[b]) + servo);
-  }
-  // What is prescribed takes what holds the bodies along its axis, which has turned meanwhile.
-  for (const std::vector<RigidBody>* at : {&state.bodies, &plan.bodies}) {
-    const std::vector<double> along = effortsThrough(*at, joints);
-    for (std::size_t b = 0; b < count; ++b) {
-      const std::optional<JointDescription>& joint = plan.bodies[b].joint;
-      if (joint && joint->prescribed) state.mean_effort[b] += 0.5 * share * along[b];
-    }
-  }
-  state.joints = joints;
 }
 
 void Simulation::Impl::moveLiquid(const StepWeights& w, StepReport& step) {
