@@ -92,11 +92,17 @@ void StepProblem::setUnknowns() {
 }
 
 Eigen::MatrixXd StepProblem::bodyInertia() const {
-  const auto size = static_cast<Eigen::Index>(6 * free.size());
-  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(size, size);
-  for (std::size_t i = 0; i < free.size(); ++i) M.block<6, 6>(6 * i, 6 * i) = inertia[i];
-  const Eigen::MatrixXd moved = M * coordinates.S();
-  Eigen::MatrixXd out = coordinates.S().transpose() * moved;
+  const Eigen::SparseMatrix<double>& S = coordinates.S();
+  std::vector<Eigen::Triplet<double>> blocks;
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    for (int k = 0; k < 36; ++k) {
+      const auto first = static_cast<int>(6 * i);
+      if (inertia[i](k) != 0.0) blocks.emplace_back(first + k % 6, first + k / 6, inertia[i](k));
+    }
+  }
+  Eigen::SparseMatrix<double> M(S.rows(), S.rows());
+  M.setFromTriplets(blocks.begin(), blocks.end());
+  Eigen::MatrixXd out = Eigen::MatrixXd(Eigen::SparseMatrix<double>(S.transpose() * M * S));
   for (std::size_t b = 0; b < joint_resistance.size(); ++b) {
     if (joint_resistance[b] == 0.0 || !coordinates.hasJoint(b)) continue;
     const Eigen::VectorXd row = coordinates.jointRow(b);
