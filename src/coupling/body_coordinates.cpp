@@ -1,5 +1,6 @@
 #include "coupling/body_coordinates.h"
 
+#include <algorithm>
 #include <map>
 
 #include "rigid/articulation.h"
@@ -126,6 +127,10 @@ void BodyCoordinates::set(const std::vector<RigidBody>& bodies, const std::vecto
   fill(size, twists, P, P_);
   fill(size, size, Q, Q_);
   fill(size, size, Q_inverse, Q_inverse_);
+}
+
+int BodyCoordinates::joints() const {
+  return static_cast<int>(std::count_if(joint_.begin(), joint_.end(), [](const auto& row) { return row.size() > 0; }));
 }
 
 std::vector<Vector6d> BodyCoordinates::carried(const std::vector<RigidBody>& bodies,

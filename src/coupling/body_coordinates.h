@@ -36,6 +36,7 @@ class BodyCoordinates {
 
   Eigen::Index size() const { return S_.cols(); }
   std::size_t bodies() const { return joint_.size(); }
+  int joints() const;
   const Eigen::SparseMatrix<double>& S() const { return S_; }
   const Eigen::SparseMatrix<double>& P() const { return P_; }
   // q of y, and y of q: of what is known of q while bodies move and y is mixed anew.

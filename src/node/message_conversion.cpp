@@ -100,6 +100,7 @@ monolith_tank::Statistics toStatistics(const StepReport& report, double real_tim
   message.free_surface = report.model.free_surface;
   message.time_order = static_cast<std::uint32_t>(report.model.time_order);
   message.coupled_bodies = static_cast<std::uint32_t>(report.model.coupled_bodies);
+  message.joints = static_cast<std::uint32_t>(report.model.joints);
   message.contacts = static_cast<std::uint32_t>(report.model.contacts);
   message.friction = report.model.friction;
   message.advection_time = report.times.advection;

@@ -24,6 +24,7 @@ struct ModelChoice {  // what the last sub-step modelled, chosen from the state;
   bool free_surface = false;
   int time_order = 1;      // of its time stepping; 1 also where 2 was asked for: Simulation::Impl::weights()
   int coupled_bodies = 0;  // bodies with at least one coupling row
+  int joints = 0;          // with a motion of their own
   int contacts = 0;
   bool friction = false;  // at least one of the contacts has a friction coefficient
 };

@@ -343,6 +343,7 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
   tellModel(step.model);
   step.model.time_order = w.order;
   step.model.coupled_bodies = system.coupledBodies();
+  step.model.joints = system.problem().coordinates.joints();
   step.model.contacts = static_cast<int>(contacts.size());
   step.model.friction = std::any_of(contacts.begin(), contacts.end(), [&](const Contact& contact) {
     return laws.of(contact.body_a, contact.body_b).friction > 0.0;

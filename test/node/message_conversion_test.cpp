@@ -70,6 +70,7 @@ TEST(MessageConversion, StatisticsCarryEveryStage) {
   report.times.surface = 0.25;
   report.model.contacts = 3;
   report.model.friction = true;
+  report.model.joints = 3;
   report.friction_iterations = 6;
   report.rheology_iterations = 9;
   report.retries = 2;
@@ -82,6 +83,7 @@ TEST(MessageConversion, StatisticsCarryEveryStage) {
   EXPECT_EQ(message.surface_time, 0.25);
   EXPECT_EQ(message.contacts, 3u);
   EXPECT_TRUE(message.friction);
+  EXPECT_EQ(message.joints, 3u);
   EXPECT_EQ(message.friction_iterations, 6u);
   EXPECT_EQ(message.rheology_iterations, 9u);
   EXPECT_EQ(message.retries, 2u);

@@ -262,6 +262,9 @@ TEST(Joint, WhatHangsOnABodyGoesWithIt) {
   EXPECT_EQ(joint(simulation).position, -0.6);
   simulation.reset();
   EXPECT_EQ(joint(simulation).position, 0.4);
+  stepOn(simulation);
+  EXPECT_EQ(simulation.report().model.joints, 1);
+  simulation.reset();
   EXPECT_LT((simulation.bodies()[0].p_WBcm - Vector3d(1.0, 1.0, 1.0)).norm(), 1e-15);
 }
 
