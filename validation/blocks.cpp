@@ -2,6 +2,7 @@
 
 #include "cases.h"
 #include "framework/meter.h"
+#include "scene/solid_body.h"
 #include "simulation/simulation.h"
 
 namespace monolith {
@@ -20,6 +21,28 @@ Scene start(double fill, double viscosity) {
   scene.time_step = 0.01;
   scene.solver.threads = 1;
   return scene;
+}
+
+// Three balls that sink in a row, loose or held together by two hinges, each with a servo, damping and friction.
+std::vector<BodyDescription> row(bool jointed) {
+  const Eigen::Vector3d first(0.07, 0.16, 0.1), next(0.08, 0.0, 0.0);
+  std::vector<BodyDescription> bodies = {sphereBody("head", 0.032, 2500.0, first)};
+  for (int i : {1, 2}) {
+    const BodyDescription ball = sphereBody("ball" + std::to_string(i), 0.032, 2500.0, first + i * next);
+    if (!jointed) {
+      bodies.push_back(ball);
+      continue;
+    }
+    JointDescription hinge;
+    hinge.name = "hinge" + std::to_string(i);
+    hinge.axis = Eigen::Vector3d::UnitY();
+    hinge.X_PJ.translation() = next;
+    hinge.position = 0.2;
+    hinge.damping = hinge.friction = 1e-3;
+    hinge.servo = {1.0, 0.1};
+    hangOn(bodies, i - 1, ball, hinge);
+  }
+  return bodies;
 }
 
 bool measure(const char* text, const Scene& scene) {
@@ -43,11 +66,11 @@ bool measure(const char* text, const Scene& scene) {
     substeps += r.substeps;
   }
   const double ms = 1e3 / static_cast<double>(substeps);
-  std::printf("%-44s %9.1f %9.1f %8.1f %8.1f %9.1f %6.1f   %s%s%s%d bodies, %d contacts%s\n", text, ms * sum.advection,
-              ms * sum.geometry, ms * sum.solve, ms * sum.surface, ms * (cpuSeconds() - cpu),
+  std::printf("%-44s %9.1f %9.1f %8.1f %8.1f %9.1f %6.1f   %s%s%s%d bodies, %d joints, %d contacts%s\n", text,
+              ms * sum.advection, ms * sum.geometry, ms * sum.solve, ms * sum.surface, ms * (cpuSeconds() - cpu),
               static_cast<double>(iterations) / static_cast<double>(substeps), r.model.liquid ? "liquid " : "",
               r.model.viscosity ? "viscosity " : "", r.model.free_surface ? "surface " : "", r.model.coupled_bodies,
-              r.model.contacts, r.model.friction ? " friction" : "");
+              r.model.joints, r.model.contacts, r.model.friction ? " friction" : "");
   std::fflush(stdout);
   return true;
 }
@@ -78,6 +101,11 @@ bool runBlocks() {
   good = measure("the body rests on the floor and slides", scene) && good;
   scene.contact.friction = 0.5;
   good = measure("and has friction", scene) && good;
+  scene = start(0.2, 1.0);
+  scene.bodies = row(false);
+  good = measure("three bodies", scene) && good;
+  scene.bodies = row(true);
+  good = measure("held together by two joints with servos", scene) && good;
   return good;
 }
 
