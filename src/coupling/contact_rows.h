@@ -39,7 +39,7 @@ struct ContactRows {
   Eigen::VectorXd friction;  // m
   Eigen::VectorXd softness;  // 3m, of its compliance (step_solver.h): 1, more where a body moves as prescribed
   std::vector<Eigen::Matrix<double, 3, 2>> tangents;
-  std::vector<JointStop> stops;  // of the last contacts
+  std::vector<JointStop> stops;  // those of the contacts behind those of bodies
   std::vector<int> pair;     // m: contacts of the same two bodies have the same number, from 0 on
 
   Eigen::Index count() const { return friction.size(); }

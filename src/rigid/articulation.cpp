@@ -12,11 +12,6 @@ using Eigen::Vector3d;
 
 namespace {
 
-// A stop counts if it is nearer than the joint comes in a step at this many times its speed, or than this part of the
-// body's radius: what pushes the body may be new.
-constexpr double kFaster = 3.0;
-constexpr double kNear = 0.1;
-
 // World axes.
 Vector3d axisOf(const RigidBody& body) { return body.q_WB * body.joint->axis; }
 
@@ -113,19 +108,56 @@ double meanPrescribedVelocity(const PrescribedJointMotion& motion, double time, 
   return motion.rate + motion.amplitude * meanOscillation(motion.frequency, motion.phase, time, dt);
 }
 
-std::vector<JointStop> jointStops(const std::vector<RigidBody>& bodies, double dt) {
+std::vector<JointStop> jointStops(const std::vector<RigidBody>& bodies) {
   std::vector<JointStop> stops;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const RigidBody& body = bodies[b];
     if (!body.joint || body.joint->prescribed) continue;
     const double radius = body.joint->type == JointType::kRevolute ? body.radius() : 1.0;
-    const double reach = kFaster * std::abs(body.joint_velocity) * dt + kNear * body.radius() / radius;
     for (const auto& [sign, gap] : {std::pair(1.0, body.joint_position - body.joint->lower),
                                     std::pair(-1.0, body.joint->upper - body.joint_position)}) {
-      if (gap <= reach) stops.push_back({static_cast<int>(b), sign, gap, radius});
+      if (std::isfinite(gap)) stops.push_back({static_cast<int>(b), sign, gap, radius});
     }
   }
   return stops;
+}
+
+std::vector<double> jointInertias(const std::vector<RigidBody>& bodies) {
+  std::vector<double> out(bodies.size(), 0.0);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (!bodies[b].joint) continue;
+    std::vector<Vector6d> twists(bodies.size(), Vector6d::Zero());  // while the joint alone moves
+    for (std::size_t i = b; i < bodies.size(); ++i) {
+      const RigidBody& body = bodies[i];
+      if (i == b) {
+        twists[i] = jointTwist(body);
+      } else if (body.joint && body.joint->parent >= static_cast<int>(b)) {
+        twists[i] = carryMatrix(bodies, i) * twists[body.joint->parent];
+      } else {
+        continue;
+      }
+      const Vector3d spin = twists[i].tail<3>();
+      out[b] += body.mass * twists[i].head<3>().squaredNorm() + spin.dot(body.worldInertia() * spin);
+    }
+  }
+  return out;
+}
+
+std::vector<double> fastestPoints(const std::vector<RigidBody>& bodies, const std::vector<double>& speeds) {
+  std::vector<double> turning(bodies.size(), 0.0), moving(bodies.size(), 0.0), out(bodies.size(), 0.0);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const RigidBody& body = bodies[b];
+    if (!body.joint) continue;
+    const auto parent = static_cast<std::size_t>(body.joint->parent);
+    // Of the body's frame, which the parent carries along; then about that.
+    const double arm = (jointPose(*body.joint, body.joint_position).translation() - bodies[parent].p_BBcm).norm();
+    const bool turns = body.joint->type == JointType::kRevolute;
+    const double origin = moving[parent] + turning[parent] * arm + (turns ? 0.0 : speeds[b]);
+    turning[b] = turning[parent] + (turns ? speeds[b] : 0.0);
+    moving[b] = origin + turning[b] * body.p_BBcm.norm();  // of its centre of mass
+    out[b] = moving[b] + turning[b] * body.radius();
+  }
+  return out;
 }
 
 void addJointEffort(const std::vector<RigidBody>& bodies, std::size_t b, double effort, std::vector<Wrench>& wrenches) {

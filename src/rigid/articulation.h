@@ -50,8 +50,14 @@ struct JointStop {
   double radius = 1.0;  // m/rad, at which what it stops moves, 1 of a prismatic joint
 };
 
-// Ends that bodies with these twists may come to within dt.
-std::vector<JointStop> jointStops(const std::vector<RigidBody>& bodies, double dt);
+// All that there are: a servo may take a joint from one end to the other within a step.
+std::vector<JointStop> jointStops(const std::vector<RigidBody>& bodies);
+
+// kg m^2, kg: inertia of all that hangs on each body's joint against its motion, the parent at rest; 0 without a joint.
+std::vector<double> jointInertias(const std::vector<RigidBody>& bodies);
+
+// m/s, that no point of each body exceeds if its joint and those before it move at these speeds, their root at rest.
+std::vector<double> fastestPoints(const std::vector<RigidBody>& bodies, const std::vector<double>& speeds);
 
 // Wrench of an effort (N m, N) of body b's joint, on it; the parent feels the opposite one at the same place.
 void addJointEffort(const std::vector<RigidBody>& bodies, std::size_t b, double effort, std::vector<Wrench>& wrenches);

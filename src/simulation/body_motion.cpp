@@ -49,19 +49,19 @@ std::vector<char> closingBodies(const std::vector<RigidBody>& bodies, const std:
     const double rate = stop.radius * stop.sign * bodies[stop.body].joint_velocity;
     if (rate < 0.0 && stop.radius * stop.gap + dt * rate < -gap_tolerance) closing[stop.body] = 1;
   }
-  const std::vector<int> roots = rootsOf(bodies);
   for (bool changed = true; changed;) {
     changed = false;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
-      const int root = roots[b];
-      if (closing[b] == closing[root]) continue;
-      // Of what joints connect all or none, but for a root that is not free.
-      closing[b] = closing[root] = 1;
+      if (!bodies[b].joint) continue;
+      // What is not free does not pass a jump on.
+      const int parent = bodies[b].joint->parent;
+      if (closing[b] == closing[parent] || bodies[parent].motion != BodyMotion::kFree) continue;
+      if (bodies[b].motion != BodyMotion::kFree) continue;
+      closing[b] = closing[parent] = 1;
       changed = true;
     }
     for (const Contact& c : contacts) {
       if (c.body_b == Contact::kWall || closing[c.body_a] == closing[c.body_b]) continue;
-      // What is not free does not pass a jump on.
       if (bodies[closing[c.body_a] ? c.body_a : c.body_b].motion != BodyMotion::kFree) continue;
       closing[c.body_a] = closing[c.body_b] = 1;
       changed = true;
@@ -88,6 +88,9 @@ void movePoints(const std::vector<RigidBody>& from, const std::vector<RigidBody>
   }
 }
 
+// By what acts on it, or by joints.
+bool isMoved(const RigidBody& body) { return body.motion == BodyMotion::kFree || body.joint.has_value(); }
+
 // Bodies that joints connect.
 std::vector<char> jointed(const std::vector<RigidBody>& bodies) {
   std::vector<char> out(bodies.size(), 0);
@@ -97,8 +100,8 @@ std::vector<char> jointed(const std::vector<RigidBody>& bodies) {
   return out;
 }
 
-// v* of a body that joints hold: what `held` makes of its momentum and angular momentum; the joints' part is the
-// solve's.
+// v* of a body that joints hold, in the pose that it is solved in: what `held` makes of its momentum and angular
+// momentum; the joints' part is the solve's.
 Vector6d heldTwist(const RigidBody& before, const RigidBody& after, const Vector3d& gravity, const Wrench& held,
                    double dt) {
   Vector6d twist;
@@ -114,9 +117,11 @@ BodyPlan planEuler(const std::vector<RigidBody>& bodies, const Vector3d& gravity
                    double time, double dt) {
   BodyPlan plan;
   plan.bodies = bodies;
+  const std::vector<char> held_by_joints = jointed(bodies);
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const RigidBody& body = bodies[b];
-    plan.free_twists.push_back(body.motion == BodyMotion::kFree         ? freeTwist(body, gravity, wrenches[b], dt)
+    plan.free_twists.push_back(held_by_joints[b] && isMoved(body) ? heldTwist(body, body, gravity, wrenches[b], dt)
+                               : body.motion == BodyMotion::kFree ? freeTwist(body, gravity, wrenches[b], dt)
                                : body.motion == BodyMotion::kPrescribed ? meanPrescribedTwist(body, time, dt)
                                                                         : Vector6d(Vector6d::Zero()));
     plan.joint_end.push_back(body.joint_position);
@@ -144,7 +149,7 @@ BodyPlan planSecondOrder(const std::vector<RigidBody>& bodies, const Vector3d& g
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     RigidBody& body = plan.bodies[b];
     plan.joint_end.push_back(body.joint_position);
-    if (body.motion == BodyMotion::kPrescribed) {
+    if (body.motion == BodyMotion::kPrescribed && !body.joint) {
       // The pose by the mean, the velocity of the end.
       body.twist = meanPrescribedTwist(body, time, dt);
       advancePose(body, dt);
@@ -154,7 +159,8 @@ BodyPlan planSecondOrder(const std::vector<RigidBody>& bodies, const Vector3d& g
       // Liquid that sticks to it brings what the body had.
       body.twist = bodies[b].twist + weights.carry * dt * past.acceleration[b];
     }
-    if (body.motion != BodyMotion::kFree) continue;
+    if (!isMoved(body)) continue;
+    const bool closes = plan.closing[b] && body.motion == BodyMotion::kFree;
     Wrench held = wrenches[b];
     held.force += weights.carry * past.liquid[b].force;
     held.torque += weights.carry * past.liquid[b].torque;
@@ -163,13 +169,14 @@ BodyPlan planSecondOrder(const std::vector<RigidBody>& bodies, const Vector3d& g
     if (body.joint && body.joint->prescribed) {
       const double mean = meanPrescribedVelocity(*body.joint->prescribed, time, dt);
       plan.joint_end[b] += dt * mean;
-      body.joint_velocity = plan.closing[b] ? mean : prescribedVelocity(*body.joint->prescribed, time + dt);
-      if (!plan.closing[b]) body.joint_position = plan.joint_end[b];
-    } else if (body.joint && !plan.closing[b]) {
+      body.joint_velocity = closes ? mean : prescribedVelocity(*body.joint->prescribed, time + dt);
+      if (!closes) body.joint_position = plan.joint_end[b];
+    } else if (body.joint && !closes) {
       body.joint_position += dt * body.joint_velocity;
     }
-    if (plan.closing[b]) {
-      plan.free_twists[b] = freeTwist(body, gravity, held, dt);
+    holds[b] = held;
+    if (closes) {
+      if (!held_by_joints[b]) plan.free_twists[b] = freeTwist(body, gravity, held, dt);
       continue;
     }
     const Vector3d expected = (1.0 - weights.carry) * past.liquid[b].torque + past.contact[b].torque;
@@ -182,12 +189,11 @@ BodyPlan planSecondOrder(const std::vector<RigidBody>& bodies, const Vector3d& g
       plan.free_twists[b] = plan.motion[b].twist;
       advancePose(body, dt);
     }
-    holds[b] = held;
     body.twist += weights.carry * dt * past.acceleration[b];
   }
   placeOnJoints(period, plan.bodies);
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    if (!held_by_joints[b] || bodies[b].motion != BodyMotion::kFree || plan.closing[b]) continue;
+    if (!held_by_joints[b] || !isMoved(bodies[b])) continue;
     plan.free_twists[b] = heldTwist(bodies[b], plan.bodies[b], gravity, holds[b], dt);
   }
   movePoints(bodies, plan.bodies, contacts);
@@ -210,6 +216,18 @@ void finishJoint(const BodyPlan& plan, std::size_t b, const std::vector<Vector6d
   body.joint_velocity = plan.bodies[b].joint_velocity;
 }
 
+// Bodies that joints hold, after their motion: to where the joints put them, with the angular momentum that they were
+// solved for in other poses. Kept in place of it their rate would add to what they have, step after step.
+void finishAssemblies(const BodyPlan& plan, const Vector3d& period, std::vector<RigidBody>& bodies) {
+  placeOnJoints(period, bodies);
+  const std::vector<char> held_by_joints = jointed(bodies);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (!held_by_joints[b] || !isMoved(bodies[b])) continue;
+    const Vector3d spin = plan.bodies[b].worldInertia() * bodies[b].twist.tail<3>();
+    bodies[b].twist.tail<3>() = bodies[b].worldInertia().ldlt().solve(spin);
+  }
+}
+
 }  // namespace
 
 void finishEuler(const BodyPlan& plan, const std::vector<Vector6d>& twists, double dt, const Vector3d& period,
@@ -219,7 +237,7 @@ void finishEuler(const BodyPlan& plan, const std::vector<Vector6d>& twists, doub
     advancePose(bodies[b], dt);
     finishJoint(plan, b, twists, 0.0, dt, bodies[b]);
   }
-  placeOnJoints(period, bodies);
+  finishAssemblies(plan, period, bodies);
 }
 
 void finishSecondOrder(const BodyPlan& plan, const std::vector<Contact>& contacts, bool rebound,
@@ -241,7 +259,7 @@ void finishSecondOrder(const BodyPlan& plan, const std::vector<Contact>& contact
     }
     finishJoint(plan, b, twists, plan.closing[b] ? part : 0.5, dt, body);
   }
-  placeOnJoints(period, bodies);
+  finishAssemblies(plan, period, bodies);
 }
 
 namespace {

@@ -1,6 +1,7 @@
 // What is given to a simulation while it runs: wrenches, commands, states of bodies and liquid.
 
 #include <cmath>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -112,6 +113,7 @@ void Simulation::setJointStates(const std::vector<JointState>& states) {
   Impl& m = *impl_;
   std::vector<RigidBody> bodies = m.state.bodies;
   const std::vector<int> roots = rootsOf(bodies);
+  std::set<int> named;
   for (const JointState& set : states) {
     m.requireJoint(set.body);
     if (roots[set.body] != roots[states.front().body]) {
@@ -119,12 +121,18 @@ void Simulation::setJointStates(const std::vector<JointState>& states) {
                                   "': expected those of one robot");
     }
     const JointDescription& joint = *bodies[set.body].joint;
-    if (!std::isfinite(set.position) || !std::isfinite(set.velocity) || set.position < joint.lower ||
-        set.position > joint.upper) {
+    // As far beyond an end as contact may leave it.
+    const double radius = joint.type == JointType::kRevolute ? bodies[set.body].radius() : 1.0;
+    const double beyond = kOverlapTolerance * m.grid.h / radius;
+    if (!std::isfinite(set.position) || !std::isfinite(set.velocity) || set.position < joint.lower - beyond ||
+        set.position > joint.upper + beyond) {
       std::ostringstream text;
       text << "state of joint '" << joint.name << "': position " << set.position << ", velocity " << set.velocity
            << ": expected finite numbers, the position from " << joint.lower << " to " << joint.upper;
       throw std::invalid_argument(text.str());
+    }
+    if (!named.insert(set.body).second) {
+      throw std::invalid_argument("state of joint '" + joint.name + "': given twice, expected once");
     }
     bodies[set.body].joint_position = set.position;
     bodies[set.body].joint_velocity = set.velocity;

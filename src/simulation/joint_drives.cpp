@@ -9,23 +9,50 @@
 namespace monolith {
 namespace {
 
-// A joint that sticks is as hard to move as if the body beyond it had this many times its inertia.
+// A joint that sticks is as hard to move as if what hangs on it had this many times its inertia, and moves no faster
+// than this (rad/s, m/s) before its friction is used up.
 constexpr double kStick = 1e6;
+constexpr double kCreep = 1e-6;
 
 bool moves(const RigidBody& body) { return body.joint && !body.joint->prescribed; }
+
+bool hasServo(const RigidBody& body) {
+  return moves(body) && (body.joint->servo.stiffness > 0.0 || body.joint->servo.damping > 0.0);
+}
 
 }  // namespace
 
 JointDrives::JointDrives(const std::vector<RigidBody>& bodies, const std::vector<JointCommand>& commands,
                          const StepWeights& w, std::vector<JointMode> modes)
-    : bodies_(bodies), commands_(commands), weights_(w), modes_(std::move(modes)) {}
+    : bodies_(bodies), commands_(commands), weights_(w), modes_(std::move(modes)), inertia_(jointInertias(bodies)) {}
 
 double JointDrives::heldEffort(const RigidBody& body, const JointCommand& command) {
   if (!moves(body)) return 0.0;
   return std::clamp(command.effort, -body.joint->most_effort, body.joint->most_effort);
 }
 
-bool JointDrives::any() const { return std::any_of(bodies_.begin(), bodies_.end(), moves); }
+bool JointDrives::any() const { return std::any_of(bodies_.begin(), bodies_.end(), hasServo) || limited(); }
+
+bool JointDrives::limited() const {
+  return std::any_of(bodies_.begin(), bodies_.end(), [](const RigidBody& body) {
+    if (!moves(body)) return false;
+    return body.joint->friction > 0.0 || (hasServo(body) && std::isfinite(body.joint->most_effort));
+  });
+}
+
+int JointDrives::mostRounds() const {
+  return 8 + 2 * static_cast<int>(std::count_if(bodies_.begin(), bodies_.end(), moves));
+}
+
+double JointDrives::fastest(std::size_t b) const {
+  const RigidBody& body = bodies_[b];
+  double speed = std::abs(body.joint_velocity);
+  if (!hasServo(body)) return speed;
+  const Servo servo = servoOf(b);
+  const double wanted = std::abs(servo.constant) / servo.slope;
+  const double most = std::max(std::abs(servo.most), std::abs(servo.least));
+  return std::max(speed, std::min(wanted, speed + weights_.dt * most / inertia_[b]));
+}
 
 JointDrives::Servo JointDrives::servoOf(std::size_t b) const {
   const RigidBody& body = bodies_[b];
@@ -43,10 +70,7 @@ JointDrives::Servo JointDrives::servoOf(std::size_t b) const {
 }
 
 double JointDrives::stickResistance(std::size_t b) const {
-  const RigidBody& body = bodies_[b];
-  const Vector6d s = jointTwist(body);
-  const Eigen::Vector3d axis = s.tail<3>();
-  return kStick * (body.mass * s.head<3>().squaredNorm() + axis.dot(body.worldInertia() * axis));
+  return std::max(kStick * inertia_[b], weights_.dt * bodies_[b].joint->friction / kCreep);
 }
 
 double JointDrives::effort(std::size_t b) const {
@@ -79,6 +103,8 @@ bool JointDrives::agree(const std::vector<double>& velocities) {
     const double asked = servo.constant - servo.slope * velocities[b];
     JointMode next;
     next.servo = asked > servo.most ? 1 : asked < servo.least ? -1 : 0;
+    // From one limit to the other there is motion that asks for less than either.
+    if (next.servo * modes_[b].servo < 0) next.servo = 0;
     next.friction = modes_[b].friction;
     if (bodies_[b].joint->friction > 0.0) {
       if (modes_[b].friction == 0) {

@@ -38,8 +38,13 @@ class JointDrives {
   // Commanded effort of body b's joint that is held over the step.
   static double heldEffort(const RigidBody& body, const JointCommand& command);
 
-  // Whether there is a joint that these act in.
+  // Whether servos or friction act in a joint, and whether a mode may turn out to be another; after how many rounds of
+  // that it will not settle.
   bool any() const;
+  bool limited() const;
+  int mostRounds() const;
+  // rad/s, m/s, that the joint of body b is at most to be expected at in this step, as far as its servo tells.
+  double fastest(std::size_t b) const;
   // What servo, damping and friction do to body b's joint in these modes, as the solve takes it: its impulse is
   // effort dt - resistance q'.
   double effort(std::size_t b) const;
@@ -66,6 +71,7 @@ class JointDrives {
   const std::vector<JointCommand>& commands_;
   StepWeights weights_;
   std::vector<JointMode> modes_;
+  std::vector<double> inertia_;  // of all that hangs on each joint, about its axis
 };
 
 }  // namespace monolith

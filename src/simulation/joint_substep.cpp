@@ -1,11 +1,11 @@
 // What joints do in a sub-step: their drives in its solve, and what of them goes on into the next one.
 
+#include <algorithm>
+
 #include "simulation/simulation_impl.h"
 
 namespace monolith {
 namespace {
-
-constexpr int kMostDriveRounds = 8;
 
 // Of a free body by a wrench over dt.
 Vector6d twistChange(const RigidBody& body, const Wrench& wrench, double dt) {
@@ -28,13 +28,22 @@ std::vector<Wrench> Simulation::Impl::actingWrenches() const {
   return out;
 }
 
+// m/s, that servos may bring a body to within a step.
+double Simulation::Impl::servoSpeed(double dt) const {
+  const JointDrives drives(state.bodies, commands, eulerWeights(dt), state.joint_modes);
+  std::vector<double> speeds;
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) speeds.push_back(drives.fastest(b));
+  const std::vector<double> fastest = fastestPoints(state.bodies, speeds);
+  return fastest.empty() ? 0.0 : *std::max_element(fastest.begin(), fastest.end());
+}
+
 // What joints' drives do depends on the motion where they are limited: solved again until it is what was assumed.
 CoupledReport Simulation::Impl::solveWithDrives(const StepWeights& w, JointDrives& drives,
                                                 const std::function<CoupledReport(FaceField<double>&)>& solve) {
   const std::vector<Vector6d> free_twists = plan.free_twists;
   const std::size_t count = state.bodies.size();
   CoupledReport all;
-  for (int round = 0; round < kMostDriveRounds; ++round) {
+  for (int round = 0; round < drives.mostRounds(); ++round) {
     if (round > 0) system.changeJointResistance(drives.resistances());
     std::vector<Wrench> efforts(count);
     for (std::size_t b = 0; b < count; ++b) {
@@ -44,8 +53,9 @@ CoupledReport Simulation::Impl::solveWithDrives(const StepWeights& w, JointDrive
     for (std::size_t b = 0; b < count; ++b) {
       plan.free_twists[b] = free_twists[b] + twistChange(plan.bodies[b], efforts[b], w.dt);
     }
-    FaceField<double> right = scratch.free_velocity;
-    CoupledReport report = solve(right);
+    FaceField<double> again;
+    if (drives.limited()) again = scratch.free_velocity;
+    CoupledReport report = solve(drives.limited() ? again : scratch.free_velocity);
     plan.free_twists = free_twists;
     report.iterations += all.iterations;
     report.solves += all.solves;
@@ -55,7 +65,7 @@ CoupledReport Simulation::Impl::solveWithDrives(const StepWeights& w, JointDrive
     std::vector<double> velocities(count);
     for (std::size_t b = 0; b < count; ++b) velocities[b] = jointVelocity(plan.bodies, b, scratch.other.twists);
     scratch.joint_modes = drives.modes();
-    if (drives.agree(velocities)) return all;
+    if (!drives.limited() || drives.agree(velocities)) return all;
   }
   all.status = SolveStatus::kNotConverged;
   all.message = "what servos and friction do in the joints did not settle in " + std::to_string(all.solves) + " solves";
@@ -70,7 +80,7 @@ void Simulation::Impl::takeJointMeans(const StepWeights& w) {
   const CoupledState& solved = scratch.other;
   for (std::size_t b = 0; b < count; ++b) {
     const RigidBody& body = plan.bodies[b];
-    if (body.motion != BodyMotion::kFree) continue;
+    if (body.motion != BodyMotion::kFree && !body.joint) continue;
     const Vector6d change = solved.twists[b] - plan.free_twists[b];
     const double part = w.implicit / w.dt;
     joints[b].force = body.mass / w.dt * change.head<3>() - part * (solved.liquid[b].force + solved.contact[b].force);

@@ -69,10 +69,19 @@ std::string describeFastOscillation(const RigidBody& body, double time_step) {
   const double frequency = oscillationOf(body);
   if (frequency <= highest) return "";
   std::ostringstream text;
-  text << "body '" << body.name << "': prescribed.frequency: value " << frequency
+  const std::string key = body.joint ? "joints." + body.joint->name + ".prescribed" : "prescribed";
+  text << "body '" << body.name << "': " << key << ".frequency: value " << frequency
        << " Hz: what it drives is inaccurate; expected at most " << highest << " Hz, so that time_step/"
        << kLargestSubsteps << ", the shortest sub-step, is a tenth of the period";
   return text.str();
+}
+
+// Empty unless a joint has a servo that can do nothing.
+std::string describeWeakServo(const RigidBody& body) {
+  if (!body.joint || body.joint->prescribed || body.joint->most_effort > 0.0) return "";
+  if (body.joint->servo.stiffness == 0.0 && body.joint->servo.damping == 0.0) return "";
+  return "joint '" + body.joint->name + "' of '" + body.name +
+         "': its URDF limits the effort to 0: expected more, with a servo";
 }
 
 // Empty if a step may have as many sub-steps as keep the surface's shortest waves from growing.
@@ -99,6 +108,8 @@ void Simulation::Impl::initialise() {
     state.bodies.push_back(makeRigidBody(body, kMeshResolution * grid.h));
     RigidBody& made = state.bodies.back();
     made.p_WBcm = walls.imageInside(made.p_WBcm);
+    const std::string weak = describeWeakServo(made);
+    if (!weak.empty()) warnings.push_back(scene.source + ": " + weak);
     const std::string fast = describeFastOscillation(made, scene.time_step);
     if (!fast.empty()) warnings.push_back(scene.source + ": " + fast);
     if (!scene.liquid.any()) continue;
@@ -107,7 +118,10 @@ void Simulation::Impl::initialise() {
     if (!resolution.warning.empty()) warnings.push_back(scene.source + ": " + resolution.warning);
   }
   for (RigidBody& body : state.bodies) {
-    if (body.joint && body.joint->prescribed) body.joint_velocity = prescribedVelocity(*body.joint->prescribed, 0.0);
+    if (!body.joint || !body.joint->prescribed) continue;
+    body.joint_velocity = prescribedVelocity(*body.joint->prescribed, 0.0);
+    // Beyond what nothing moves else neither does it.
+    if (state.bodies[body.joint->parent].motion != BodyMotion::kFree) body.motion = BodyMotion::kPrescribed;
   }
   const std::vector<int> roots = rootsOf(state.bodies);
   std::set<int> assemblies;
@@ -190,10 +204,11 @@ double Simulation::Impl::typicalSpeed() const {
   const double gravity = scene.gravity.norm();
   if (gravity > 0.0) return std::sqrt(gravity * grid.h);
   double speed = std::max({state.fastest, bodySpeed(), state.liquid_speed});
+  const std::vector<Wrench> acting = actingWrenches();
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
     const RigidBody& body = state.bodies[b];
     if (body.motion != BodyMotion::kFree) continue;
-    speed = std::max(speed, std::sqrt(wrenches[b].force.norm() / body.mass * grid.h));
+    speed = std::max(speed, std::sqrt(acting[b].force.norm() / body.mass * grid.h));
   }
   return speed;
 }

@@ -94,7 +94,7 @@ class Simulation {
   // std::invalid_argument unless finite.
   Eigen::Vector3d liquidVelocity(const Eigen::Vector3d& point) const;
 
-  // Back to the scene's initial state, time 0, no wrenches.
+  // Back to the scene's initial state, time 0, no wrenches, no commands to joints.
   void reset();
 
  private:

@@ -64,6 +64,7 @@ struct Simulation::Impl {
   StepWeights weights(double dt) const;
   double contactReach(double dt) const;
   std::vector<Wrench> actingWrenches() const;
+  double servoSpeed(double dt) const;
   BodyPlan planBodies(const StepWeights& w, const std::vector<char>& closing, std::vector<Contact>& contacts) const;
   void prepareSolve(const StepWeights& w);
   void advectLiquid(const StepWeights& w, FaceField<double>& free_velocity);

@@ -43,6 +43,7 @@ double Simulation::Impl::contactReach(double dt) const {
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
     reach = std::max(reach, state.bodies[b].fastestPoint(next.free_twists[b]));
   }
+  reach = std::max(reach, servoSpeed(dt));
   return std::min(2.0 * reach * dt, scene.tank.size.norm()) + 0.05 * grid.h;
 }
 
@@ -299,7 +300,7 @@ bool Simulation::Impl::substep(double dt, StepReport& step) {
   {
     const StageClock clock(step.times.contact);
     contacts = detector->detect(state.bodies, contactReach(dt));
-    stops = jointStops(state.bodies, dt);
+    stops = jointStops(state.bodies);
     closing = closingBodies(state.bodies, contacts, stops, dt, kClosingTolerance * grid.h);
     for (const Contact& contact : contacts) step.penetration = std::max(step.penetration, -contact.gap);
     plan = planBodies(w, closing, contacts);

@@ -10,8 +10,9 @@
 //
 // Bodies: momentum and angular momentum, gravity and wrenches from outside held over the step; (1 - b) of the liquid's
 // mean wrench on the body is carried over, which therefore is reported as the mean over the step: with it and with that
-// of the contacts m (v^(n+1) - v^n)/dt = sum of wrenches + m g holds exactly. So is (1 - b) of what joints do, which the
-// solve has in the directions that they leave at the end of the step; what is reported of joints is their mean, too.
+// of the contacts m (v^(n+1) - v^n)/dt = sum of wrenches + m g holds exactly. So is (1 - b) of what joints do, which
+// the solve has in the directions that they leave at the end of the step; what is reported of joints is their mean,
+// too.
 //
 // Where bodies and surface are in the solve: with BDF2 at x^n + dt u^n, corrected to x^n + dt (u^n + u^(n+1))/2 after
 // it. For a wave or a floating body this pair is neutrally stable up to omega dt = 2, as is backward Euler's x^n in the

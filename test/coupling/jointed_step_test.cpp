@@ -128,6 +128,8 @@ TEST(JointedStep, IsTheSameWhicheverWayItIsSolved) {
     RandomStep step(seed, Discretisation::kFitted, firstMotion(seed), true);
     step.problem.joint_resistance = {0.0, 0.3, 20.0};
     step.problem.setUnknowns();
+    step.rows = buildContactRows(step.problem, step.contacts, std::vector<ContactLaw>(step.contacts.size(), {0.3, 0.0}),
+                                 {}, 1.0);
     contacts += static_cast<int>(step.contacts.size());
     DirectSolver direct;
     FastSolver fast;
@@ -153,7 +155,7 @@ TEST(JointedStep, IsTheSameWhicheverWayItIsSolved) {
     const Eigen::VectorXd expected = step.problem.coordinates.gatherMotion(answers[0].bodies);
     for (const StepVector& other : answers) {
       const Eigen::VectorXd y = step.problem.coordinates.gatherMotion(other.bodies);
-      EXPECT_LT((y - expected).norm(), 1e-6 * expected.norm());  // whatever the bodies weigh
+      EXPECT_LT((y - expected).norm(), 1e-5 * expected.norm());  // whatever the bodies weigh
     }
   }
   EXPECT_GT(contacts, 3);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "scene/solid_body.h"
 
@@ -110,19 +111,50 @@ TEST(Articulation, ImagesStayWhereTheBodiesWere) {
   for (std::size_t b = 0; b < bodies.size(); ++b) EXPECT_LT((bodies[b].twist - there[b].twist).norm(), 1e-12) << b;
 }
 
-TEST(Articulation, EndsOfARangeCountWhenTheyAreNear) {
+TEST(Articulation, EveryEndOfARangeIsAStop) {
   std::vector<RigidBody> bodies = tree();
-  for (RigidBody& body : bodies) body.joint_velocity = 0.0;
-  bodies[1].joint_position = 0.59;
-  const std::vector<JointStop> still = jointStops(bodies, 0.01);
-  // Of the slide, which is all a prismatic joint's range to go, neither; of the hip the upper end.
-  ASSERT_EQ(still.size(), 1u);
-  EXPECT_EQ(still[0].body, 1);
-  EXPECT_EQ(still[0].sign, -1.0);
-  EXPECT_NEAR(still[0].gap, 0.01, 1e-15);
-  bodies[3].joint_velocity = -60.0;  // 0.9 rad to the lower end
-  bodies[3].joint_position = 0.4;
-  EXPECT_EQ(jointStops(bodies, 0.01).size(), 3u) << "of the tail both";
+  bodies[1].joint->upper = std::numeric_limits<double>::infinity();
+  bodies[3].joint->prescribed = PrescribedJointMotion();
+  const std::vector<JointStop> stops = jointStops(bodies);
+  ASSERT_EQ(stops.size(), 3u) << "of the hip the lower one, of the slide both, of what is prescribed none";
+  EXPECT_EQ(stops[0].body, 1);
+  EXPECT_EQ(stops[0].sign, 1.0);
+  EXPECT_NEAR(stops[0].gap, 0.9, 1e-15);
+  EXPECT_EQ(stops[2].body, 2);
+  EXPECT_EQ(stops[2].sign, -1.0);
+  EXPECT_NEAR(stops[2].gap, 0.65, 1e-15);
+  EXPECT_EQ(stops[2].radius, 1.0);
+}
+
+// Of the energy while one joint moves alone.
+TEST(Articulation, InertiaOfAJointIsThatOfAllBeyondIt) {
+  std::vector<RigidBody> bodies = tree();
+  const std::vector<double> inertias = jointInertias(bodies);
+  EXPECT_EQ(inertias[0], 0.0);
+  for (std::size_t b = 1; b < bodies.size(); ++b) {
+    for (RigidBody& body : bodies) {
+      body.joint_velocity = 0.0;
+      body.twist.setZero();
+    }
+    bodies[b].joint_velocity = 2.0;
+    moveWithJoints(bodies);
+    double energy = 0.0;
+    for (const RigidBody& body : bodies) energy += kineticEnergy(body);
+    EXPECT_NEAR(inertias[b], energy / 2.0, 1e-12 * energy);
+  }
+}
+
+TEST(Articulation, NothingIsFasterThanItsFastestPoint) {
+  std::vector<RigidBody> bodies = tree();
+  bodies[0].twist.setZero();
+  std::vector<double> speeds;
+  for (const RigidBody& body : bodies) speeds.push_back(std::abs(body.joint_velocity));
+  moveWithJoints(bodies);
+  const std::vector<double> fastest = fastestPoints(bodies, speeds);
+  for (std::size_t b = 1; b < bodies.size(); ++b) {
+    EXPECT_LE(bodies[b].twist.head<3>().norm(), fastest[b]);
+    EXPECT_LE(fastest[b], 5.0 * bodies[b].fastestPoint(bodies[b].twist));
+  }
 }
 
 TEST(Articulation, NeighboursNeverTouch) {

@@ -268,5 +268,139 @@ TEST(Joint, WhatHangsOnABodyGoesWithIt) {
   EXPECT_LT((simulation.bodies()[0].p_WBcm - Vector3d(1.0, 1.0, 1.0)).norm(), 1e-15);
 }
 
+// About axes that turn as well.
+TEST(Joint, AFreeAssemblyThatTumblesKeepsEnergyAndAngularMomentum) {
+  const auto drift = [](double dt) {
+    Scene scene = emptyRoom(dt);
+    scene.gravity.setZero();
+    scene.bodies.push_back(boxBody("base", {0.1, 0.14, 0.2}, 1000.0, {1.0, 1.0, 1.0}));
+    scene.bodies[0].angular_velocity = {6.0, 1.0, 3.0};
+    JointDescription joint = hinge(Vector3d(1.0, 2.0, 0.5).normalized(), {0.05, 0.0, -0.1}, 0.4);
+    joint.velocity = 1.0;
+    hangOn(scene.bodies, 0, hangingBar("bar", 0.3, 0.06, 1000.0), joint);
+    Simulation simulation(scene);
+    const auto state = [&] {
+      double energy = 0.0;
+      Vector3d spin = Vector3d::Zero();
+      for (const RigidBody& body : simulation.bodies()) {
+        energy += kineticEnergy(body);
+        spin += body.mass * body.p_WBcm.cross(body.twist.head<3>()) + body.worldInertia() * body.twist.tail<3>();
+      }
+      return std::pair(energy, spin);
+    };
+    const auto [energy, spin] = state();
+    while (simulation.time() < 2.0 - 1e-9) stepOn(simulation);
+    const auto [later, turned] = state();
+    return std::pair(std::abs(later / energy - 1.0), (turned - spin).norm() / spin.norm());
+  };
+  const auto [energy, spin] = drift(0.02);
+  const auto [fine_energy, fine_spin] = drift(0.01);
+  EXPECT_LT(energy, 0.02);
+  EXPECT_LT(spin, 0.02);
+  EXPECT_LT(fine_energy, 0.35 * energy);
+  EXPECT_LT(fine_spin, 0.35 * spin);
+}
+
+TEST(Joint, AServoAtItsLimitFindsItsWay) {
+  for (const double stiffness : {1e2, 1e4, 1e5}) {
+    JointDescription weak;
+    weak.servo.stiffness = stiffness;
+    weak.servo.damping = 0.1 * stiffness;
+    weak.most_effort = 1.0;
+    Scene scene = pendulum(0.02, 0.0, weak);
+    scene.gravity.setZero();
+    Simulation simulation(scene);
+    simulation.setJointCommand(1, {0.0, 0.5, 0.0});
+    for (int step = 0; step < 200; ++step) {
+      stepOn(simulation);
+      EXPECT_EQ(simulation.report().retries, 0) << stiffness;
+      EXPECT_LE(std::abs(joint(simulation).effort), 1.0 + 1e-9);
+    }
+    EXPECT_NEAR(joint(simulation).position, 0.5, 0.05) << stiffness;
+  }
+}
+
+// However far a servo wants to go within a step.
+TEST(Joint, ServosGoThroughNothing) {
+  for (const double stiffness : {1e3, 1e5}) {
+    JointDescription limited;
+    limited.servo.stiffness = stiffness;
+    limited.lower = -0.5;
+    limited.upper = 0.5;
+    Simulation against_end(pendulum(0.02, 0.0, limited));
+    against_end.setJointCommand(1, {0.0, 2.0, 0.0});
+    for (int step = 0; step < 20; ++step) {
+      stepOn(against_end);
+      EXPECT_LT(joint(against_end).position, 0.5 + 1e-6) << stiffness;
+    }
+    EXPECT_NEAR(joint(against_end).position, 0.5, 1e-6) << stiffness;
+
+    Scene scene = emptyRoom(0.02);
+    scene.solver.cfl = 0.75;
+    scene.bodies = {boxBody("base", {0.1, 0.1, 0.1}, 1000.0, {0.4, 1.0, 1.0}),
+                    boxBody("wall", {0.1, 0.4, 0.4}, 1000.0, {0.95, 1.0, 1.0})};
+    for (BodyDescription& body : scene.bodies) body.motion = BodyMotion::kFixed;
+    JointDescription slide = hinge(Vector3d::UnitX(), {0.2, 0.0, 0.0}, 0.0);
+    slide.type = JointType::kPrismatic;
+    slide.servo.stiffness = stiffness;
+    hangOn(scene.bodies, 0, boxBody("slider", {0.1, 0.1, 0.1}, 1000.0, Vector3d::Zero()), slide);
+    Simulation against_body(scene);
+    against_body.setJointCommand(2, {0.0, 0.9, 0.0});
+    for (int step = 0; step < 20; ++step) stepOn(against_body);
+    EXPECT_NEAR(joint(against_body).position, 0.25, 1e-4) << stiffness;
+  }
+}
+
+TEST(Joint, FrictionHoldsAHeavyLoadBeyondALightLink) {
+  for (const double density : {1.0, 1000.0}) {
+    Scene scene = emptyRoom(0.02);
+    scene.bodies.push_back(boxBody("base", {0.1, 0.1, 0.1}, 1000.0, {1.0, 1.0, 1.0}));
+    scene.bodies[0].motion = BodyMotion::kFixed;
+    JointDescription rough = hinge(Vector3d::UnitY(), {0.0, 0.0, 0.0}, 1.0);
+    rough.friction = 50.0;
+    hangOn(scene.bodies, 0, hangingBar("link", 0.2, 0.02, density), rough);
+    rough.axis = Vector3d::UnitX();
+    rough.X_PJ.translation().z() = -0.2;
+    hangOn(scene.bodies, 1, hangingBar("load", 0.2, 0.1, 2000.0), rough);
+    Simulation simulation(scene);
+    for (int step = 0; step < 100; ++step) stepOn(simulation);
+    for (const JointState& state : simulation.jointStates()) EXPECT_NEAR(state.position, 1.0, 1e-5) << density;
+  }
+}
+
+// What is prescribed has its way through the floor, too, and is told of.
+TEST(Joint, APrescribedOneOnAFixedBaseStopsForNothing) {
+  JointDescription moved;
+  moved.prescribed = PrescribedJointMotion{-0.5, 0.0, 0.0, 0.0};
+  Scene scene = pendulum(0.02, 1.0, moved);
+  scene.bodies[0].X_WB.translation().z() = 0.25;
+  // A ball is in its way.
+  scene.bodies.push_back(sphereBody("ball", 0.05, 500.0, {0.85, 1.0, 0.05}));
+  Simulation simulation(scene);
+  std::string warnings;
+  for (int step = 0; step < 100; ++step) {
+    stepOn(simulation);
+    warnings += simulation.report().warning;
+  }
+  EXPECT_NEAR(joint(simulation).position, 0.0, 1e-9);
+  EXPECT_NE(warnings.find("base/bar"), std::string::npos) << warnings;
+  EXPECT_GT(simulation.bodies()[2].p_WBcm.x(), 1.0) << "pushed aside";
+}
+
+TEST(Joint, WhatIsReportedCanBeSet) {
+  JointDescription limited;
+  limited.lower = 0.3;
+  limited.upper = 1.5;
+  Simulation simulation(pendulum(0.02, 1.0, limited));
+  for (int step = 0; step < 60; ++step) {
+    stepOn(simulation);
+    const JointState now = joint(simulation);
+    EXPECT_NO_THROW(simulation.setJointStates({now})) << step;
+    EXPECT_EQ(joint(simulation).position, now.position);
+  }
+  const JointState now = joint(simulation);
+  EXPECT_THROW(simulation.setJointStates({now, now}), std::invalid_argument) << "which of the two?";
+}
+
 }  // namespace
 }  // namespace monolith
