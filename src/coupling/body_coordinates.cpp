@@ -19,8 +19,6 @@ void addBlock(Eigen::Index row, Eigen::Index column, const Eigen::MatrixXd& bloc
   }
 }
 
-bool hasUnknown(const RigidBody& body) { return body.joint && !body.joint->prescribed; }
-
 // v = S q and P v = q of the bodies of an assembly; q: the root's twist where that is free, then the joints'
 // velocities.
 struct JointVelocities {
@@ -35,7 +33,7 @@ struct JointVelocities {
       at[assembly.bodies[i]] = i;
       S.emplace_back(Eigen::MatrixXd::Zero(6, assembly.count));
       P.emplace_back(Eigen::MatrixXd::Zero(assembly.count, 6));
-      joint.push_back(hasUnknown(bodies[b]) ? next++ : -1);
+      joint.push_back(bodies[b].hasFreeJoint() ? next++ : -1);
       if (!bodies[b].joint) {
         if (!assembly.adrift) continue;
         S[i].leftCols<6>().setIdentity();
@@ -78,7 +76,7 @@ void BodyCoordinates::set(const std::vector<RigidBody>& bodies, const std::vecto
     assembly.bodies = members[root];
     assembly.adrift = bodies[root].motion == BodyMotion::kFree;
     assembly.count = assembly.adrift ? 6 : 0;
-    for (const int b : members[root]) assembly.count += hasUnknown(bodies[b]) ? 1 : 0;
+    for (const int b : members[root]) assembly.count += bodies[b].hasFreeJoint() ? 1 : 0;
     size += assembly.count;
     if (assembly.count > 0) assemblies_.push_back(assembly);
   }

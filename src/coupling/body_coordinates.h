@@ -38,7 +38,6 @@ class BodyCoordinates {
   std::size_t bodies() const { return joint_.size(); }
   int joints() const;
   const Eigen::SparseMatrix<double>& S() const { return S_; }
-  const Eigen::SparseMatrix<double>& P() const { return P_; }
   // q of y, and y of q: of what is known of q while bodies move and y is mixed anew.
   const Eigen::SparseMatrix<double>& Q() const { return Q_; }
   const Eigen::SparseMatrix<double>& Q_inverse() const { return Q_inverse_; }

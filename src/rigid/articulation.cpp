@@ -3,7 +3,6 @@
 #include <cmath>
 #include <utility>
 
-#include "rigid/oscillation.h"
 #include "scene/joint_motion.h"
 
 namespace monolith {
@@ -100,23 +99,16 @@ void moveWithJoints(std::vector<RigidBody>& bodies) {
   }
 }
 
-double prescribedVelocity(const PrescribedJointMotion& motion, double time) {
-  return motion.rate + motion.amplitude * oscillation(motion.frequency, motion.phase, time);
-}
-
-double meanPrescribedVelocity(const PrescribedJointMotion& motion, double time, double dt) {
-  return motion.rate + motion.amplitude * meanOscillation(motion.frequency, motion.phase, time, dt);
-}
+double stopRadius(const RigidBody& body) { return body.joint->type == JointType::kRevolute ? body.radius() : 1.0; }
 
 std::vector<JointStop> jointStops(const std::vector<RigidBody>& bodies) {
   std::vector<JointStop> stops;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const RigidBody& body = bodies[b];
-    if (!body.joint || body.joint->prescribed) continue;
-    const double radius = body.joint->type == JointType::kRevolute ? body.radius() : 1.0;
+    if (!body.hasFreeJoint()) continue;
     for (const auto& [sign, gap] : {std::pair(1.0, body.joint_position - body.joint->lower),
                                     std::pair(-1.0, body.joint->upper - body.joint_position)}) {
-      if (std::isfinite(gap)) stops.push_back({static_cast<int>(b), sign, gap, radius});
+      if (std::isfinite(gap)) stops.push_back({static_cast<int>(b), sign, gap, stopRadius(body)});
     }
   }
   return stops;

@@ -23,7 +23,7 @@ bool mayTouch(const std::vector<RigidBody>& bodies, const std::vector<int>& root
 // rests.
 Vector6d jointTwist(const RigidBody& body);
 
-// X: twist of b -> twist of the parent, as if they were one body.
+// X: twist of the parent -> twist of b, as if they were one body.
 Matrix6d carryMatrix(const std::vector<RigidBody>& bodies, std::size_t b);
 
 // s^+ with s^+ s = 1: the joint's velocity is s^+ (v_b - X v_parent).
@@ -38,17 +38,16 @@ void placeOnJoints(const Eigen::Vector3d& period, std::vector<RigidBody>& bodies
 // Their twists, from the roots' and the joints' velocities.
 void moveWithJoints(std::vector<RigidBody>& bodies);
 
-// Velocity that a prescribed joint has at a time, and its mean from then on over dt.
-double prescribedVelocity(const PrescribedJointMotion& motion, double time);
-double meanPrescribedVelocity(const PrescribedJointMotion& motion, double time, double dt);
-
 // One end of a joint's range: what it keeps is gap >= 0.
 struct JointStop {
   int body = 0;
   double sign = 1.0;    // the gap grows with the joint's position (1: the lower end) or falls (-1)
   double gap = 0.0;     // rad, m
-  double radius = 1.0;  // m/rad, at which what it stops moves, 1 of a prismatic joint
+  double radius = 1.0;  // see stopRadius()
 };
+
+// m/rad, at which what a joint's end stops moves; 1 of a prismatic joint.
+double stopRadius(const RigidBody& body);
 
 // All that there are: a servo may take a joint from one end to the other within a step.
 std::vector<JointStop> jointStops(const std::vector<RigidBody>& bodies);

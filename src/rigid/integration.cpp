@@ -1,7 +1,7 @@
 #include "rigid/integration.h"
 
-#include "rigid/oscillation.h"
 #include "rigid/rotation.h"
+#include "scene/oscillation.h"
 
 namespace monolith {
 

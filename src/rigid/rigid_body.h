@@ -38,6 +38,8 @@ struct RigidBody {
   double joint_position = 0.0;  // rad, m
   double joint_velocity = 0.0;  // rad/s, m/s
 
+  // A joint whose motion is not prescribed.
+  bool hasFreeJoint() const { return joint && !joint->prescribed; }
   Eigen::Isometry3d pose() const {                            // X_WB, of the body frame
     Eigen::Isometry3d X_WB(q_WB);
     X_WB.translation() = p_WBcm - q_WB * p_BBcm;

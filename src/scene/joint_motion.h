@@ -1,6 +1,7 @@
 #pragma once
-// Where a joint's position puts the body that hangs on it.
+// Where a joint's position puts the body that hangs on it, and how one that is prescribed moves.
 
+#include "scene/oscillation.h"
 #include "scene/scene.h"
 
 namespace monolith {
@@ -17,6 +18,14 @@ inline Eigen::Isometry3d jointPose(const JointDescription& joint, double positio
       break;
   }
   return joint.X_PJ * X_JB;
+}
+
+// rad/s, m/s, at a time, and the mean from then on over dt.
+inline double prescribedVelocity(const PrescribedJointMotion& motion, double time) {
+  return motion.rate + motion.amplitude * oscillation(motion.frequency, motion.phase, time);
+}
+inline double meanPrescribedVelocity(const PrescribedJointMotion& motion, double time, double dt) {
+  return motion.rate + motion.amplitude * meanOscillation(motion.frequency, motion.phase, time, dt);
 }
 
 }  // namespace monolith

@@ -1,21 +1,12 @@
 #include "scene/joint_placement.h"
 
-#include <cmath>
-
 #include "scene/joint_motion.h"
 
 namespace monolith {
-namespace {
-
-double initialRate(const PrescribedJointMotion& motion) {
-  return motion.rate + motion.amplitude * 2.0 * M_PI * motion.frequency * std::cos(motion.phase);
-}
-
-}  // namespace
 
 void placeOnParent(const BodyDescription& parent, BodyDescription& body) {
   JointDescription& joint = *body.joint;
-  if (joint.prescribed) joint.velocity = initialRate(*joint.prescribed);
+  if (joint.prescribed) joint.velocity = prescribedVelocity(*joint.prescribed, 0.0);
   body.X_WB = parent.X_WB * jointPose(joint, joint.position);
   body.angular_velocity = parent.angular_velocity;
   body.velocity = parent.velocity + parent.angular_velocity.cross(body.X_WB.translation() - parent.X_WB.translation());

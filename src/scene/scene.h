@@ -83,6 +83,8 @@ struct PrescribedJointMotion {
 struct JointServo {
   double stiffness = 0.0;  // N m/rad, N/m
   double damping = 0.0;    // N m s/rad, N s/m
+
+  bool any() const { return stiffness > 0.0 || damping > 0.0; }
 };
 
 // By which a body hangs on another. Units of a revolute joint, then of a prismatic one. A continuous joint is a

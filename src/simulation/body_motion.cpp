@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "rigid/overlap.h"
+#include "scene/joint_motion.h"
 
 namespace monolith {
 namespace {

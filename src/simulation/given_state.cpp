@@ -45,9 +45,7 @@ void Simulation::Impl::moveAssembly(int root, std::vector<RigidBody>& bodies) co
 
 void Simulation::Impl::requireJoint(int body) const {
   const std::vector<RigidBody>& bodies = state.bodies;
-  if (body >= 0 && body < static_cast<int>(bodies.size()) && bodies[body].joint && !bodies[body].joint->prescribed) {
-    return;
-  }
+  if (body >= 0 && body < static_cast<int>(bodies.size()) && bodies[body].hasFreeJoint()) return;
   throw std::invalid_argument("joint of body index " + std::to_string(body) +
                               ": expected a body that hangs on another by a joint whose motion is not prescribed");
 }
@@ -122,8 +120,7 @@ void Simulation::setJointStates(const std::vector<JointState>& states) {
     }
     const JointDescription& joint = *bodies[set.body].joint;
     // As far beyond an end as contact may leave it.
-    const double radius = joint.type == JointType::kRevolute ? bodies[set.body].radius() : 1.0;
-    const double beyond = kOverlapTolerance * m.grid.h / radius;
+    const double beyond = kOverlapTolerance * m.grid.h / stopRadius(bodies[set.body]);
     if (!std::isfinite(set.position) || !std::isfinite(set.velocity) || set.position < joint.lower - beyond ||
         set.position > joint.upper + beyond) {
       std::ostringstream text;

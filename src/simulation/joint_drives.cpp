@@ -14,11 +14,7 @@ namespace {
 constexpr double kStick = 1e6;
 constexpr double kCreep = 1e-6;
 
-bool moves(const RigidBody& body) { return body.joint && !body.joint->prescribed; }
-
-bool hasServo(const RigidBody& body) {
-  return moves(body) && (body.joint->servo.stiffness > 0.0 || body.joint->servo.damping > 0.0);
-}
+bool hasServo(const RigidBody& body) { return body.hasFreeJoint() && body.joint->servo.any(); }
 
 }  // namespace
 
@@ -27,7 +23,7 @@ JointDrives::JointDrives(const std::vector<RigidBody>& bodies, const std::vector
     : bodies_(bodies), commands_(commands), weights_(w), modes_(std::move(modes)), inertia_(jointInertias(bodies)) {}
 
 double JointDrives::heldEffort(const RigidBody& body, const JointCommand& command) {
-  if (!moves(body)) return 0.0;
+  if (!body.hasFreeJoint()) return 0.0;
   return std::clamp(command.effort, -body.joint->most_effort, body.joint->most_effort);
 }
 
@@ -35,13 +31,14 @@ bool JointDrives::any() const { return std::any_of(bodies_.begin(), bodies_.end(
 
 bool JointDrives::limited() const {
   return std::any_of(bodies_.begin(), bodies_.end(), [](const RigidBody& body) {
-    if (!moves(body)) return false;
+    if (!body.hasFreeJoint()) return false;
     return body.joint->friction > 0.0 || (hasServo(body) && std::isfinite(body.joint->most_effort));
   });
 }
 
 int JointDrives::mostRounds() const {
-  return 8 + 2 * static_cast<int>(std::count_if(bodies_.begin(), bodies_.end(), moves));
+  return 8 + 2 * static_cast<int>(std::count_if(bodies_.begin(), bodies_.end(),
+                                                [](const RigidBody& body) { return body.hasFreeJoint(); }));
 }
 
 double JointDrives::fastest(std::size_t b) const {
@@ -74,7 +71,7 @@ double JointDrives::stickResistance(std::size_t b) const {
 }
 
 double JointDrives::effort(std::size_t b) const {
-  if (!moves(bodies_[b])) return 0.0;
+  if (!bodies_[b].hasFreeJoint()) return 0.0;
   const Servo servo = servoOf(b);
   const JointMode mode = modes_[b];
   const double drives = mode.servo > 0 ? servo.most : mode.servo < 0 ? servo.least : servo.constant;
@@ -82,7 +79,7 @@ double JointDrives::effort(std::size_t b) const {
 }
 
 double JointDrives::resistance(std::size_t b) const {
-  if (!moves(bodies_[b])) return 0.0;
+  if (!bodies_[b].hasFreeJoint()) return 0.0;
   const JointMode mode = modes_[b];
   const double slope = mode.servo == 0 ? servoOf(b).slope : 0.0;
   const bool sticks = bodies_[b].joint->friction > 0.0 && mode.friction == 0;
@@ -98,7 +95,7 @@ std::vector<double> JointDrives::resistances() const {
 bool JointDrives::agree(const std::vector<double>& velocities) {
   bool right = true;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    if (!moves(bodies_[b])) continue;
+    if (!bodies_[b].hasFreeJoint()) continue;
     const Servo servo = servoOf(b);
     const double asked = servo.constant - servo.slope * velocities[b];
     JointMode next;
@@ -121,13 +118,13 @@ bool JointDrives::agree(const std::vector<double>& velocities) {
 }
 
 double JointDrives::servoEffort(std::size_t b, double velocity) const {
-  if (!moves(bodies_[b])) return 0.0;
+  if (!bodies_[b].hasFreeJoint()) return 0.0;
   const Servo servo = servoOf(b);
   return std::clamp(servo.constant - servo.slope * velocity, servo.least, servo.most);
 }
 
 double JointDrives::frictionEffort(std::size_t b, double velocity) const {
-  if (!moves(bodies_[b]) || bodies_[b].joint->friction == 0.0) return 0.0;
+  if (!bodies_[b].hasFreeJoint() || bodies_[b].joint->friction == 0.0) return 0.0;
   if (modes_[b].friction != 0) return -modes_[b].friction * bodies_[b].joint->friction;
   return -stickResistance(b) * velocity / weights_.dt;
 }

@@ -12,6 +12,7 @@
 
 #include "fluid/advection.h"
 #include "rigid/overlap.h"
+#include "scene/joint_motion.h"
 #include "simulation/resolution.h"
 #include "simulation/simulation_impl.h"
 
@@ -78,8 +79,7 @@ std::string describeFastOscillation(const RigidBody& body, double time_step) {
 
 // Empty unless a joint has a servo that can do nothing.
 std::string describeWeakServo(const RigidBody& body) {
-  if (!body.joint || body.joint->prescribed || body.joint->most_effort > 0.0) return "";
-  if (body.joint->servo.stiffness == 0.0 && body.joint->servo.damping == 0.0) return "";
+  if (!body.hasFreeJoint() || body.joint->most_effort > 0.0 || !body.joint->servo.any()) return "";
   return "joint '" + body.joint->name + "' of '" + body.name +
          "': its URDF limits the effort to 0: expected more, with a servo";
 }
